@@ -244,11 +244,18 @@ std::string perScene(const CampaignSettings& settings, Value value) {
 }  // namespace
 
 std::map<std::string, std::string> campaignKeys(const CampaignOptions& options, const CampaignSettings& settings) {
-  // "options" holds the options as given, from which --resume goes on. The other keys are for readers.
+  // "options" holds the options as given, from which --resume goes on, and the scenes, as those by default may be
+  // others by then. The other keys are for readers.
+  auto defining = options.defining;
+  std::vector<std::string>& words = defining["scenes"];
+  words.clear();
   std::vector<std::string> scenes;
-  for (const CampaignScene& scene : settings.scenes) scenes.push_back(scene.name);
+  for (const CampaignScene& scene : settings.scenes) {
+    words.push_back(scene.word);
+    scenes.push_back(scene.name);
+  }
   std::map<std::string, std::string> keys{
-      {"options", json(options.defining).dump()},
+      {"options", json(defining).dump()},
       {"profile", std::string(chosenProfile(options).name)},
       {"scenes", joined(scenes)},
       {"seeds", std::to_string(settings.seeds)},

@@ -12,9 +12,7 @@
 #include "bench/results/results_store.h"
 #include "bench/results/within_folder.h"
 #include "library/campaign_options.h"
-#include "library/campaign_rows.h"
 #include "library/errors.h"
-#include "scenes/scene_list.h"
 
 namespace wavecrest {
 namespace {
@@ -22,15 +20,15 @@ namespace {
 using api::CampaignOptions;
 using Words = std::vector<std::string>;
 
-// The words of "scenes" or "--methods"; where the option was not given, all names that it stands for by default.
+// The words of "scenes" or "--methods"; where the option was not given, the names of what the campaign has without it.
 Words listed(const CampaignOptions& options, const std::string& name) {
   if (const auto given = options.defining.find(name); given != options.defining.end()) return given->second;
+  const CampaignSettings settings = campaignSettings(options);
   Words words;
   if (name == "scenes") {
-    for (const SceneEntry& entry : builtInScenes()) words.emplace_back(entry.name);
+    for (const CampaignScene& scene : settings.scenes) words.push_back(scene.word);
   } else {
-    const auto profile = options.defining.find("--profile");
-    words = defaultMethods(*findProfile(profile == options.defining.end() ? "quick" : profile->second.front()));
+    for (const CampaignMethod& row : settings.methods) words.push_back(row.name());
   }
   return words;
 }
@@ -47,23 +45,26 @@ bool isLonger(const CampaignOptions& before, const CampaignOptions& after) {
   return true;
 }
 
-// `before` with the words of one option, if that makes the campaign larger. Otherwise nothing.
+// `before` with the words of one option, if that leaves the campaign as it is or makes it larger. Otherwise nothing.
 std::optional<CampaignOptions> extended(const CampaignOptions& before, const std::string& name, const Words& words) {
   CampaignOptions after = before;
   // Scenes and methods: new words are appended. Nothing is removed.
   if (name == "scenes" || name == "--methods") {
     Words all = listed(before, name);
-    const size_t known = all.size();
     for (const std::string& word : words) {
       if (std::find(all.begin(), all.end(), word) == all.end()) all.push_back(word);
     }
     after.defining[name] = all;
-    return all.size() > known ? std::optional(after) : std::nullopt;
+    return after;
   }
-  // Other options: the new value must ask for more. Options without an order cannot change.
+  // Other options: the new value must ask for as much or more. Options without an order cannot change.
   after.defining[name] = words;
   if (name == "--seeds") {
-    return campaignSettings(after).seeds > campaignSettings(before).seeds ? std::optional(after) : std::nullopt;
+    return campaignSettings(after).seeds >= campaignSettings(before).seeds ? std::optional(after) : std::nullopt;
+  }
+  if (name == "--images") {
+    return campaignSettings(after).keepImages == campaignSettings(before).keepImages ? std::optional(after)
+                                                                                     : std::nullopt;
   }
   if (name == "--time" || name == "--time-factor" || name == "--spp")
     return isLonger(before, after) ? std::optional(after) : std::nullopt;
@@ -136,7 +137,8 @@ void resumeCampaign(CampaignOptions& options, const std::filesystem::path& resul
       throw UsageError(fmt::format("{} {}: {} was begun with {}; expected the same, more, or another --out", name,
                                    fmt::join(words, " "), results.string(), was));
     }
-    if (name == "--methods" && campaignSettings(all).shard.count > 1) {
+    const auto methods = [](const CampaignOptions& one) { return campaignSettings(one).methods; };
+    if (name == "--methods" && campaignSettings(all).shard.count > 1 && methods(*larger) != methods(all)) {
       throw UsageError("--methods: shards divide scenes and methods, so none can be added; expected another --out");
     }
     all = *larger;

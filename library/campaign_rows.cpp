@@ -53,6 +53,15 @@ std::vector<CampaignMethod> rowsOfWord(const std::string& word, const CampaignWo
   return rows;
 }
 
+// The rows of a campaign without --methods: those of the profile, or one of each method.
+std::vector<std::string> defaultMethods(const Profile& profile) {
+  std::vector<std::string> names;
+  for (const CampaignMethod& row : profile.rows) names.push_back(row.name());
+  if (!names.empty()) return names;
+  for (const MethodEntry& entry : kMethods) names.emplace_back(entry.name);
+  return names;
+}
+
 // All rows of the campaign in the order of the words, each once: two words may stand for the same row.
 std::vector<CampaignMethod> chosenMethods(const CampaignWords& words, const Profile& profile) {
   const auto* named = given(words, "--methods");
@@ -79,14 +88,6 @@ std::span<const std::string_view> campaignMethodNames() {
     return all;
   }();
   static const std::vector<std::string_view> names(texts.begin(), texts.end());
-  return names;
-}
-
-std::vector<std::string> defaultMethods(const Profile& profile) {
-  std::vector<std::string> names;
-  for (const CampaignMethod& row : profile.rows) names.push_back(row.name());
-  if (!names.empty()) return names;
-  for (const MethodEntry& entry : kMethods) names.emplace_back(entry.name);
   return names;
 }
 

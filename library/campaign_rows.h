@@ -17,9 +17,6 @@ using CampaignWords = std::map<std::string, std::vector<std::string>>;  // by op
 // The names of rows that --methods of a campaign takes: each method, and its variants ("ppm-direct", "vcm-auto").
 std::span<const std::string_view> campaignMethodNames();
 
-// The rows of a campaign without --methods: those of the profile, or one of each method.
-std::vector<std::string> defaultMethods(const Profile& profile);
-
 // NAME=VALUE of a scene's variables; UsageError for any other word.
 std::map<std::string, std::string> parseDefinitions(const std::vector<std::string>& words);
 

@@ -41,7 +41,6 @@ struct Profile {
   std::string_view description;  // one line
   std::array<uint32_t, 2> size;
   unsigned seeds;
-  bool ownReferences;                    // renders them itself, if none are given
   std::span<const CampaignMethod> rows;  // none: one of each method
   uint64_t lightPaths;                   // of methods that merge, in an iteration; 0: one per pixel
   std::optional<double> radius;          // of the first merges; unset: what the image needs

@@ -64,7 +64,7 @@ FileLock::FileLock(const std::filesystem::path& file) : path_(realName(file).str
     if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       const std::string holder = readHolder(descriptor_);
       close(descriptor_);
-      throw FileLockError(fmt::format("{}: {} works on it; expected one at a time", file.string(), holder));
+      throw FileIsLocked(fmt::format("{}: {} works on it; expected one at a time", file.string(), holder));
     }
     if (isCurrent(descriptor_, path_)) break;
     close(descriptor_);

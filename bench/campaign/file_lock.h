@@ -12,14 +12,18 @@
 
 namespace wavecrest {
 
-// Another process works on the file. The text is complete.
+// The file cannot be locked. The text is complete.
 struct FileLockError : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+// Another process works on it.
+struct FileIsLocked : FileLockError {
+  using FileLockError::FileLockError;
 };
 
 class FileLock {
  public:
-  // Throws FileLockError where another process holds it. The folder must exist.
+  // Throws FileIsLocked where another process holds it, else FileLockError. The folder must exist.
   explicit FileLock(const std::filesystem::path& file);
   // Removes the lock's file.
   ~FileLock();

@@ -58,6 +58,7 @@ nlohmann::ordered_json conditionsOf(const RunRequest& request) {
   if (!request.settings.iterations) {
     conditions["clock"] = kClockNames[static_cast<size_t>(request.settings.clock)];
     conditions["threads"] = request.settings.threads;
+    conditions["cpu"] = machineRecord().cpu;
   }
   return conditions;
 }
@@ -120,18 +121,22 @@ class SnapshotTaker {
   }
 
   void take(unsigned number) {
-    // The record. An image counts from its first whole pass on.
+    // An image counts from its first whole pass on. One that has not changed since the last snapshot is not measured
+    // again.
     const RenderStatistics statistics = session_.statistics();
     if (!statistics.hasWholeImage()) {
       ++leftOut_;
       return;
     }
-    paths_ = session_.progressPaths();
+    if (!run_.snapshots.empty() && statistics.paths == paths_) return;
+    paths_ = statistics.paths;
+    // The record. Its number is the last of those that are due within the run and have this image.
+    const double seconds = std::min(statistics.renderSeconds, settings_.seconds.value_or(statistics.renderSeconds));
     SnapshotRecord& snapshot = run_.snapshots.emplace_back();
-    snapshot.number = number;
+    snapshot.number = std::max(number + 1, request_.schedule.firstAfter(seconds, statistics.iterations)) - 1;
     snapshot.renderSeconds = statistics.renderSeconds;
     snapshot.iterations = statistics.iterations;
-    snapshot.file = (fs::path("images") / fmt::format("{}.{:04}.exr", stemOf(run_), number)).string();
+    snapshot.file = (fs::path("images") / fmt::format("{}.{:04}.exr", stemOf(run_), snapshot.number)).string();
     // The image, with the statistics as attributes. Unless all images are kept, it takes the place of the one before.
     const Image image = filmImage(session_);
     nlohmann::ordered_json stats = this->stats(statistics);
@@ -154,16 +159,15 @@ class SnapshotTaker {
     }
   }
 
-  // Whether anything was rendered since the last snapshot.
-  bool outdated() const { return run_.snapshots.empty() || session_.progressPaths() != paths_; }
-
-  // The stats object of the run. Stages and snapshots are left out, as the results file has tables for them.
+  // The stats object of the run. Stages and snapshots are left out, as the results file has tables for them, and the
+  // peak of memory, which is that of all runs of the process so far.
   nlohmann::ordered_json stats(const RenderStatistics& statistics) const {
     const double wall = std::chrono::duration<double>(Clock::now() - begin_).count();
     nlohmann::ordered_json all =
         renderStats(request_.scene, request_.settings, statistics, request_.loadSeconds, wall, {});
     all.erase("stages");
     all.erase("snapshots");
+    all.erase("peak_memory_bytes");
     all["cpu"] = machineRecord().cpu;
     if (request_.settings.seconds) {
       all["asked_seconds"] = *request_.settings.seconds;
@@ -226,6 +230,12 @@ BegunRun beginRun(const RunRequest& request, RenderSettings& settings) {
   return {.session = Session::create(request.scene, settings)};
 }
 
+// Whether a run has all of its time or iterations.
+bool isOver(const Session& session, const RenderSettings& settings) {
+  return (settings.seconds && session.progressSeconds() >= *settings.seconds) ||
+         (settings.iterations && session.statistics().iterations >= *settings.iterations);
+}
+
 }  // namespace
 
 MetricValues measureImage(const PreparedReference& reference, const std::string& name, Image image) {
@@ -273,15 +283,16 @@ std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHoo
     const WatchScope watch(hooks, *session);
     count = renderWithSnapshots(*session, settings, request.schedule, takeSnapshot, hooks.goesOn, count);
   }
-  // A request to save that came too late for the loop above does not end the run.
-  const bool stopped = session->interrupted() && !(hooks.goesOn && hooks.goesOn());
+  // A request to save that came too late for the loop above does not end the run. A request to stop does not drop one
+  // that is over.
+  const bool stopped = session->interrupted() && !isOver(*session, settings) && !(hooks.goesOn && hooks.goesOn());
   if (stopped) {
     taker.save();
     if (request.checkpoint.empty()) removeUnfinished(request.out, run);
     return std::nullopt;
   }
   // The end of the run is always a snapshot.
-  if (taker.outdated()) taker.take(count);
+  taker.take(count);
   taker.save();
   const RenderStatistics statistics = session->statistics();
   run.stats = taker.stats(statistics).dump();

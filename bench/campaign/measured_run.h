@@ -33,11 +33,11 @@ struct RunRequest {
 };
 
 // Returns the run. Its images have names of unfinished ones until placeImages(), so that those of an earlier, shorter
-// run stay as they are. Returns nothing if the run was interrupted; its images are then removed, unless there is a
-// checkpoint to resume from. A run is refused if the method cannot render the scene, or if the time is too short for
-// one whole image; the stats then have the time that was asked for (asked_seconds). Snapshots before the first whole
-// image are left out and counted in the stats (snapshots_left_out). Stats of a timed run also list what disturbed it
-// (doubts).
+// run stay as they are. Returns nothing if the run was interrupted before its end; its images are then removed, unless
+// there is a checkpoint to resume from. A run is refused if the method cannot render the scene, or if the time is too
+// short for one whole image; the stats then have the time that was asked for (asked_seconds). Snapshots before the
+// first whole image are left out and counted in the stats (snapshots_left_out). Of several that are due at once, as
+// within a long iteration, only the last is taken. Stats of a timed run also list what disturbed it (doubts).
 std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHooks& hooks);
 
 // Gives the images of a run the names that its record says, out/images/SCENE.METHOD.SEED.NUMBER.exr, in place of those

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -57,13 +58,12 @@ struct Noise {
 
 // Sums over the blocks of a tile of both references.
 struct Sums {
-  double difference = 0, total = 0;
+  double difference = 0;
   Noise a{}, b{};
   int blocks = 0;
 
   void add(double meanA, double meanB, double halfA, double halfB) {
     difference += meanA - meanB;
-    total += 0.5 * (meanA + meanB);
     a.add(halfA);
     b.add(halfB);
     ++blocks;
@@ -78,6 +78,20 @@ struct Sums {
 
 // Whether blocks share their noise: a Markov chain leaves samples in the blocks around it one after the other.
 bool isCorrelated(const Reference& reference) { return reference.info.method == "mlt"; }
+
+// Scales both halves of a reference to the same sum over blocks. means, halves: of blocks. Chains estimate the
+// brightness of a half by one number, whose error all of its blocks share.
+void scaleHalves(std::vector<double>& means, std::vector<double>& halves, double sum) {
+  const double total = std::accumulate(means.begin(), means.end(), 0.0),
+               difference = std::accumulate(halves.begin(), halves.end(), 0.0);
+  if (!(total > std::abs(difference))) return;  // a half is black
+  const double scaleA = sum / (total + difference), scaleB = sum / (total - difference);
+  for (size_t i = 0; i < means.size(); ++i) {
+    const double a = scaleA * (means[i] + halves[i]), b = scaleB * (means[i] - halves[i]);
+    means[i] = 0.5 * (a + b);
+    halves[i] = 0.5 * (a - b);
+  }
+}
 
 // By how much the variance of a tile's sum is larger than that of independent blocks: the mean over tiles of what the
 // halves' difference itself has, at least 1. noise: Sums::a or Sums::b.
@@ -110,17 +124,24 @@ void requireComparable(const Reference& a, const Reference& b) {
 }  // namespace
 
 std::string Agreement::describe() const {
-  return fmt::format("{}: means differ by {:.2g} %, largest z of {} tiles and the whole {:.2f}, limit {:.2f}",
-                     agrees() ? "agree" : "disagree", 100 * relativeDifference, tiles, largestZ, limit);
+  return fmt::format("{}: means differ by {:.2g} %{}, largest z of {} tiles and the whole {:.2f}, limit {:.2f}",
+                     agrees() ? "agree" : "disagree", 100 * relativeDifference,
+                     testsBrightness ? "" : ", which of mlt is not tested", tiles, largestZ, limit);
 }
 
 Agreement compareReferences(const Reference& a, const Reference& b) {
   requireComparable(a, b);
   // Means of blocks, for both references and their half differences.
   const uint32_t columns = a.mean.width / kBlock, rows = a.mean.height / kBlock;
-  const std::vector<double> meansA = blockMeans(a.mean, columns, rows), meansB = blockMeans(b.mean, columns, rows);
-  const std::vector<double> halvesA = blockMeans(*a.difference, columns, rows),
-                            halvesB = blockMeans(*b.difference, columns, rows);
+  std::vector<double> meansA = blockMeans(a.mean, columns, rows), meansB = blockMeans(b.mean, columns, rows);
+  std::vector<double> halvesA = blockMeans(*a.difference, columns, rows),
+                      halvesB = blockMeans(*b.difference, columns, rows);
+  // Chains are compared but for the brightness of their halves.
+  const double sumA = std::accumulate(meansA.begin(), meansA.end(), 0.0),
+               sumB = std::accumulate(meansB.begin(), meansB.end(), 0.0);
+  const bool correlated = isCorrelated(a) || isCorrelated(b);
+  if (isCorrelated(a)) scaleHalves(meansA, halvesA, sumB);
+  if (isCorrelated(b)) scaleHalves(meansB, halvesB, isCorrelated(a) ? sumB : sumA);
   // Sums them over tiles and over the whole image.
   std::vector<Sums> tiles(size_t{kTilesX} * kTilesY);
   Sums whole;
@@ -133,16 +154,17 @@ Agreement compareReferences(const Reference& a, const Reference& b) {
     }
   }
   // The largest z, and the limit for it. The tile with the fewest blocks has the fewest degrees of freedom, so its
-  // limit holds for all; of noise that blocks share only the tiles tell the variance.
+  // limit holds for all; of noise that blocks share only the tiles tell the variance, and their sum is fixed.
   const double factorA = varianceFactor(a, tiles, &Sums::a), factorB = varianceFactor(b, tiles, &Sums::b);
-  Agreement agreement{.tiles = kTilesX * kTilesY, .largestZ = whole.z(factorA, factorB)};
-  int fewest = isCorrelated(a) || isCorrelated(b) ? static_cast<int>(tiles.size()) : whole.blocks;
+  Agreement agreement{
+      .tiles = kTilesX * kTilesY, .testsBrightness = !correlated, .largestZ = whole.z(factorA, factorB)};
+  int fewest = correlated ? static_cast<int>(tiles.size()) - 1 : whole.blocks;
   for (const Sums& tile : tiles) {
     agreement.largestZ = std::max(agreement.largestZ, tile.z(factorA, factorB));
     fewest = std::min(fewest, tile.blocks);
   }
   agreement.limit = studentLimit(fewest, kFalseAlarms / (agreement.tiles + 1));
-  agreement.relativeDifference = whole.total != 0 ? whole.difference / whole.total : 0;
+  agreement.relativeDifference = sumA + sumB != 0 ? 2 * (sumA - sumB) / (sumA + sumB) : 0;
   return agreement;
 }
 

@@ -4,7 +4,9 @@
 // blocks the sum of their differences has a variance that the halves tell: the sum of the squared half differences of
 // both. Its ratio to the root of that is about Student's t of as many degrees of freedom as blocks where the truths
 // agree. Chains (mlt) share their noise among blocks: the variance is then larger by what the tiles of their own half
-// difference tell, and has as many degrees of freedom as there are tiles.
+// difference tell, and has a degree of freedom less than there are tiles. All blocks of a half of chains share the
+// error of its brightness, so their halves are scaled to the brightness of the other reference first: it is not tested.
+// Light of the direct pass does not have that error, so a part of it may remain.
 #pragma once
 
 #include <stdexcept>
@@ -16,6 +18,7 @@ namespace wavecrest {
 
 struct Agreement {
   unsigned tiles = 0;
+  bool testsBrightness = true;    // false where one of them is of mlt
   double largestZ = 0;            // by magnitude, over tiles and the whole image
   double limit = 0;               // beyond it, one in a hundred comparisons of equal truths would be
   double relativeDifference = 0;  // of the means of the whole images

@@ -186,10 +186,12 @@ class Campaign {
     if (hooks_.planned) hooks_.planned(plan);
   }
 
-  // Whether no reference has to be rendered for the scene.
+  // Whether no reference has to be rendered for the scene. Throws if that of a known scene cannot be used.
   bool hasReference(const CampaignScene& entry) {
     const Scene scene = load(entry);
-    return isKnown(entry, scene) || referenceExists(scene, entry, settings_);
+    if (!isKnown(entry, scene)) return referenceExists(scene, entry, settings_);
+    knownReference(entry);
+    return true;
   }
 
   // Whether the scene was begun by an earlier process, which settled its reference. Throws if it has changed since.
@@ -200,6 +202,25 @@ class Campaign {
                                          entry.file.string(), *known));
     }
     return known.has_value();
+  }
+
+  // The reference of a known scene. Throws if runs of the scene were measured against another one: references differ in
+  // their noise floors.
+  Reference knownReference(const CampaignScene& entry) const {
+    const fs::path file = settings_.out / referenceFile(entry.name);
+    Reference found = readReference(file);
+    const CampaignResults results = readResults(resultsFile(settings_));
+    const SceneRecord* known = results.findScene(entry.name);
+    const bool measured = std::ranges::any_of(
+        results.runs, [&](const RunRecord& run) { return run.scene == entry.name && !run.snapshots.empty(); });
+    const auto text = [](const MetricValues& floors) { return nlohmann::json(floors).dump(); };  // the same for NaN
+    if (known != nullptr && measured && text(known->noiseFloors) != text(found.noiseFloors)) {
+      throw ResultsFileError(fmt::format(
+          "{}: has other noise floors than the reference that runs of {} were measured against; expected that "
+          "one in its place, or another --out",
+          file.string(), entry.name));
+    }
+    return found;
   }
 
   // Loads a scene in the size of the campaign. Meanwhile a signal may end the process at once.
@@ -242,7 +263,7 @@ class Campaign {
   // rendered, and the scene is stored with it.
   Reference reference(const CampaignScene& entry, const Scene& scene) {
     if (isKnown(entry, scene)) {
-      Reference known = readReference(settings_.out / referenceFile(entry.name));
+      Reference known = knownReference(entry);
       // Methods that are new to the campaign need verdicts on the path classes.
       putScene(entry, scene, known);
       return known;
@@ -302,10 +323,11 @@ class Campaign {
                                                           .say = hooks_.say,
                                                           .loadSeconds = loadSeconds},
                                                          hooks_.session);
-        if (!run || stopped()) return false;
+        if (!run) return false;
         store(*run, knownRun(entry, method, seed));
         const CampaignProgress& progress = pace_.finish(entry, secondsSince(begin));
         if (hooks_.finished) hooks_.finished(*run, progress);
+        if (stopped()) return false;
       }
     }
     return true;
@@ -377,7 +399,7 @@ class Campaign {
         return bias.scene == entry.name && bias.method == name && bias.seeds == runs.size() && bias.number == last;
       };
       if (std::any_of(results.biases.begin(), results.biases.end(), known)) continue;
-      if (!reference) reference = readReference(settings_.out / referenceFile(entry.name));
+      if (!reference) reference = knownReference(entry);
       store_->putBiases(measureBiases(runs, *reference));
     }
   }

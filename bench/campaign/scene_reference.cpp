@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <thread>
+
+#include "bench/campaign/file_lock.h"
 #include "engine/inspect/path_classes.h"
 #include "engine/scene/hash_text.h"
 #include "metrics/image/atomic_file.h"
@@ -125,7 +129,17 @@ Reference sceneReference(const Scene& scene, const CampaignScene& entry, const C
     return *given.reference;
   }
   say(fmt::format("{}: rendering its reference ({} {})", entry.name, given.file.string(), given.wrong));
-  return renderOwn(scene, entry, settings, file, hooks);
+  for (bool waits = false;; waits = true) {
+    try {
+      return renderOwn(scene, entry, settings, file, hooks);
+    } catch (const FileIsLocked&) {
+      if (settings.shard.count == 1) throw;
+    }
+    // Another shard renders the same one.
+    if (!waits) say(fmt::format("{}: waiting for another shard to render its reference", entry.name));
+    if (hooks.stopped && hooks.stopped()) return {};
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+  }
 }
 
 }  // namespace wavecrest

@@ -16,7 +16,8 @@ struct ReferenceError : std::runtime_error {
 
 // Leaves the reference in out/references/SCENE.exr and returns it: a copy of referenceFolder/SCENE.exr where that is of
 // this scene in this size; else it is rendered, or the next call goes on rendering it. Where references are required,
-// or other shards would render other ones, that is a ReferenceError instead. hooks.stopped() tells an unfinished one.
+// or other shards would render other ones, that is a ReferenceError instead. Waits while another shard renders the same
+// one. hooks.stopped() tells an unfinished one.
 Reference sceneReference(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings,
                          const ReferenceHooks& hooks, const std::function<void(const std::string&)>& say);
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "bench/claims/study.h"
 
@@ -20,13 +21,15 @@ constexpr double kPathTolerance = 0.9;
 // Whether a method merges paths with photons within a radius.
 bool merges(const std::string& method) { return method == "ppm" || method == "bpm" || method == "vcm"; }
 
-// All methods that the conditions of a claim name.
+// All methods that a condition, or the conditions of a claim, name.
+std::set<std::string> methodsOf(const Condition& condition) {
+  std::set<std::string> methods(condition.methods.begin(), condition.methods.end());
+  methods.insert(condition.than.begin(), condition.than.end());
+  return methods;
+}
 std::set<std::string> methodsOf(const Claim& claim) {
   std::set<std::string> methods;
-  for (const Condition& condition : claim.conditions) {
-    methods.insert(condition.methods.begin(), condition.methods.end());
-    methods.insert(condition.than.begin(), condition.than.end());
-  }
+  for (const Condition& condition : claim.conditions) methods.merge(methodsOf(condition));
   return methods;
 }
 
@@ -52,20 +55,35 @@ std::optional<double> pathShare(const json& stats, const std::string& method, co
   return paths / pixels / studyPathsPerPixel(scene);
 }
 
-// The runs of all methods have equal time, unless the campaign is being extended: otherwise a text of two that differ.
-std::string unequalTimes(const std::set<std::string>& methods, const SceneLosses& scene) {
+// The processor of a run. Stats of earlier versions do not say it: those runs are of the campaign's first process, and
+// the campaign's processors are listed with commas.
+std::string processorOf(const json& stats, const CampaignResults& results) {
+  const auto all = results.campaign.find("cpu");
+  const std::string first = all == results.campaign.end() ? "" : all->second.substr(0, all->second.find(", "));
+  return stats.value("cpu", first);
+}
+
+// The runs of all methods have equal time on one processor, unless the campaign was extended: otherwise a text of two
+// that differ.
+std::string unequalRuns(const std::set<std::string>& methods, const SceneLosses& scene) {
   std::optional<double> shortest, longest;
+  std::set<std::string> processors;
   for (const std::string& method : methods) {
     for (const RunRecord* run : scene.runs(method)) {
       const json stats = json::parse(run->stats, nullptr, false);
-      if (!stats.is_object() || !stats.contains("asked_seconds")) continue;
+      if (!stats.is_object()) continue;
+      if (std::string cpu = processorOf(stats, scene.results()); !cpu.empty()) processors.insert(std::move(cpu));
+      if (!stats.contains("asked_seconds")) continue;
       const double asked = stats["asked_seconds"];
       shortest = std::min(shortest.value_or(asked), asked);
       longest = std::max(longest.value_or(asked), asked);
     }
   }
-  if (shortest == longest) return "";
-  return fmt::format("runs of {:.3g} s and of {:.3g} s stand side by side", *shortest, *longest);
+  if (shortest != longest) {
+    return fmt::format("runs of {:.3g} s and of {:.3g} s stand side by side", *shortest, *longest);
+  }
+  if (processors.size() < 2) return "";
+  return fmt::format("runs of two processors stand side by side: {}", fmt::join(processors, " and "));
 }
 
 // The least share over the runs of a method; nothing where none says.
@@ -79,6 +97,30 @@ std::optional<double> leastShare(const SceneLosses& scene, const std::string& me
     if (own) least = std::min(least.value_or(*own), *own);
   }
   return least;
+}
+
+// What the runs of these methods lack on a scene.
+std::string unmetOn(const ClaimNeeds& needs, const std::set<std::string>& methods, const SceneLosses& scene) {
+  if (std::string unequal = unequalRuns(methods, scene); !unequal.empty()) return unequal;
+  for (const std::string& method : methods) {
+    // Light paths: only merging methods search for photons.
+    if (needs.lightPaths > 0 && merges(method)) {
+      const std::optional<double> share = leastShare(scene, method, lightPathShare);
+      if (share && *share < needs.lightPaths) {
+        return fmt::format("a search of {} meets {:.2g} of the study's light paths; needs {:g}", scene.rowOf(method),
+                           *share, needs.lightPaths);
+      }
+    }
+    // Paths per pixel by the end of the run.
+    if (needs.paths > 0) {
+      const std::optional<double> share = studyPathShare(scene, method);
+      if (share && *share < kPathTolerance * needs.paths) {
+        return fmt::format("{} made {:.2g} of the study's paths per pixel; needs {:g}", scene.rowOf(method), *share,
+                           needs.paths);
+      }
+    }
+  }
+  return "";
 }
 
 }  // namespace
@@ -97,25 +139,11 @@ std::string pathShares(const Claim& claim, const SceneLosses& scene) {
 }
 
 std::string unmetNeed(const Claim& claim, const SceneLosses& scene) {
-  const std::set<std::string> methods = methodsOf(claim);
-  if (std::string times = unequalTimes(methods, scene); !times.empty()) return times;
-  for (const std::string& method : methods) {
-    // Light paths: only merging methods search for photons.
-    if (claim.needs.lightPaths > 0 && merges(method)) {
-      const std::optional<double> share = leastShare(scene, method, lightPathShare);
-      if (share && *share < claim.needs.lightPaths) {
-        return fmt::format("a search of {} meets {:.2g} of the study's light paths; needs {:g}", scene.rowOf(method),
-                           *share, claim.needs.lightPaths);
-      }
-    }
-    // Paths per pixel by the end of the run.
-    if (claim.needs.paths > 0) {
-      const std::optional<double> share = studyPathShare(scene, method);
-      if (share && *share < kPathTolerance * claim.needs.paths) {
-        return fmt::format("{} made {:.2g} of the study's paths per pixel; needs {:g}", scene.rowOf(method), *share,
-                           claim.needs.paths);
-      }
-    }
+  if (std::string need = unmetOn(claim.needs, methodsOf(claim), scene); !need.empty()) return need;
+  for (const Condition& condition : claim.conditions) {
+    if (condition.control.empty()) continue;
+    const std::string need = unmetOn(claim.needs, methodsOf(condition), scene.other(condition.control));
+    if (!need.empty()) return fmt::format("in {}, the control, {}", condition.control, need);
   }
   return "";
 }

@@ -9,8 +9,8 @@
 
 namespace wavecrest {
 
-// Why the claim cannot be judged on this scene, in some ten words; empty where it can be. Methods that were not
-// measured are another matter, since others may refute a claim.
+// Why the claim cannot be judged on this scene, or by a condition's control scene, in some ten words; empty where it
+// can be. Methods that were not measured are another matter, since others may refute a claim.
 std::string unmetNeed(const Claim& claim, const SceneLosses& scene);
 
 // Camera and light paths per pixel, or mutations, of the method's shortest run, as a share of what the study had time

@@ -48,7 +48,8 @@ const std::vector<Explanation>& studyExplanations() {
 }
 
 bool isOf(const Explanation& explanation, std::string_view profile, std::string_view commit) {
-  return explanation.profile == profile && explanation.commit == commit;
+  const std::string all = ", " + std::string(commit) + ", ";
+  return explanation.profile == profile && all.find(", " + explanation.commit + ", ") != std::string::npos;
 }
 
 const Explanation* findExplanation(std::string_view claim, std::string_view verdict, std::string_view profile) {

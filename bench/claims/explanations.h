@@ -24,7 +24,8 @@ const std::vector<Explanation>& studyExplanations();
 // is none. It may be of another campaign (isOf).
 const Explanation* findExplanation(std::string_view claim, std::string_view verdict, std::string_view profile);
 
-// Whether the explanation was written about a campaign of this profile and commit.
+// Whether the explanation was written about a campaign of this profile and commit. Of a campaign that went on by other
+// programs, commit is the list "a, b" of all.
 bool isOf(const Explanation& explanation, std::string_view profile, std::string_view commit);
 
 }  // namespace wavecrest

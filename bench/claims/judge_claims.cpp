@@ -31,18 +31,19 @@ bool speaksOfPpm(const Claim& claim) {
 }
 
 // The study does not say where ppm has its direct light from. If both readings were measured, a finding holds or fails
-// if it does so by both. If they differ it is undecided, or not reached in this time if it holds by neither and lacks
-// no more than time by one of them.
+// if it does so by both. If they differ it is not judged if one of them is not, not reached in this time if it holds by
+// neither and lacks no more than time by one, else undecided.
 Judgement judgeOnScene(const Claim& claim, const std::string& name, const CampaignResults& results) {
   const SceneLosses first(name, results), second(name, results, PpmReading::nextEvent);
+  if (!speaksOfPpm(claim) || !second.missing("ppm").empty()) return judgeReading(claim, first);
+  if (!first.missing("ppm").empty()) return judgeReading(claim, second);
   Judgement one = judgeReading(claim, first);
-  if (!speaksOfPpm(claim) || !second.missing("ppm").empty()) return one;
-  Judgement other = judgeReading(claim, second);
-  if (other.verdict == one.verdict || other.verdict == V::notJudged) return one;
-  if (one.verdict == V::notJudged) return other;
-  const bool noneHolds = one.verdict != V::holds && other.verdict != V::holds;
-  const bool lacksTime = one.verdict == V::notReached || other.verdict == V::notReached;
-  return {.verdict = noneHolds && lacksTime ? V::notReached : V::undecided,
+  const Judgement other = judgeReading(claim, second);
+  if (other.verdict == one.verdict) return one;
+  const auto either = [&](V verdict) { return one.verdict == verdict || other.verdict == verdict; };
+  return {.verdict = either(V::notJudged)                         ? V::notJudged
+                     : either(V::notReached) && !either(V::holds) ? V::notReached
+                                                                  : V::undecided,
           .figure = fmt::format("by {}: {}, {}; by {}: {}, {}", first.rowOf("ppm"), toString(one.verdict), one.figure,
                                 second.rowOf("ppm"), toString(other.verdict), other.figure),
           .evidence = one.evidence + "; " + other.evidence};

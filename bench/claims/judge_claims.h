@@ -1,5 +1,5 @@
-// Judges claims on the results of a campaign: holds, does not hold, not reached in this time, undecided within noise,
-// or not judged here.
+// Judges claims on the results of a campaign: holds, does not hold, not reached in this time, undecided, or not
+// judged here.
 //
 // Losses are compared by their logarithms at the end of runs of equal render time, times to equal quality likewise,
 // with 95 % bands from the seeds; a single seed gets the spread between the two seeds of the standard campaign

@@ -94,6 +94,8 @@ class Judge {
     }
     if (const std::optional<double> floor = scene_.floorLoss(metric)) {
       line += fmt::format(" (noise floor {:.4g})", scoreOfLoss(metric, *floor));
+    } else if (scene_.isUnbiased(metric)) {
+      line += " (without the reference's noise)";
     }
     note(metric + ": " + line);
   }
@@ -169,10 +171,11 @@ class Judge {
   }
 
   // A comparison of `a` and `b` that fails because the loss of `a` is not within the factor of that of `b`. Where it
-  // falls faster, so that at these rates it would be within the time that the study had, time is what it lacks.
+  // falls faster, so that at these rates it would be within the time that the study had, time is what it lacks. Near
+  // the reference's noise every curve is flat, so `b` has to be above it.
   Comparison withTime(Comparison comparison, const std::string& metric, const std::string& a, const std::string& b,
                       double factor) const {
-    if (comparison.verdict != V::fails) return comparison;
+    if (comparison.verdict != V::fails || nearFloor(metric, scene_.logLosses(b, metric))) return comparison;
     const std::optional<double> shareA = studyPathShare(scene_, a), shareB = studyPathShare(scene_, b);
     const double end = scene_.endSeconds(a);
     const double closing = steepness(a, metric, end) - steepness(b, metric, end);
@@ -225,12 +228,14 @@ class Judge {
     std::sort(all.begin(), all.end(), isClearer);
     return all[all.size() / 2];
   }
-  // Compares `a` with every other method of `than` that was measured.
+  // What stands for a comparison with a method that was not measured: it might have gone either way.
+  Comparison unknown(const std::string& method) const { return {V::notJudged, 0, scene_.missing(method)}; }
+  // Compares `a` with every other method of `than`.
   std::vector<Comparison> againstAll(const std::string& a,
                                      const std::function<Comparison(const std::string&)>& compare) const {
     std::vector<Comparison> all;
     for (const std::string& b : condition_.than) {
-      if (b != a && measured(b)) all.push_back(compare(b));
+      if (b != a) all.push_back(measured(b) ? compare(b) : unknown(b));
     }
     return all;
   }
@@ -279,7 +284,10 @@ class Judge {
   void leads(const std::string& metric) {
     std::vector<Comparison> candidates;
     for (const std::string& method : condition_.methods) {
-      if (!measured(method)) continue;
+      if (!measured(method)) {
+        candidates.push_back(unknown(method));
+        continue;
+      }
       const auto all = againstAll(method, [&](const std::string& other) { return notLarger(metric, method, other); });
       if (!all.empty()) candidates.push_back(worst(all));
     }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "bench/claims/claim_needs.h"
+
 namespace wavecrest {
 
 std::optional<ReachedLater> reachedLater(const SceneLosses& scene, const std::string& method, const std::string& metric,
@@ -15,8 +17,11 @@ std::optional<ReachedLater> reachedLater(const SceneLosses& scene, const std::st
   const auto later = [end](double at) { return std::max(at, end); };
   const double seconds = later(time->seconds);
   if (!(seconds <= kFarthestTime * end)) return std::nullopt;
+  // What takes longer than the study had, by its paths, does not lack time.
+  const std::optional<double> share = studyPathShare(scene, method);
+  if (!share || !(seconds / end * *share <= 1)) return std::nullopt;
   const double low = roundedTime(later(time->low)), high = roundedTime(later(time->high));
-  const bool open = !(time->high <= kFarthestTime * seconds);
+  const bool open = !(time->high <= kFarthestTime * end);
   const std::string interval = open ? fmt::format("{:g} s or longer", low) : fmt::format("{:g} to {:g} s", low, high);
   return ReachedLater{
       .seconds = seconds,

@@ -13,8 +13,9 @@ struct ReachedLater {
   std::string text = {};  // "at this rate 0.9 after 96 s (80 to 120 s)"
 };
 
-// Nothing where the slope of the loss is not below 0 by its 95 % interval, or where the time is more than 100 times the
-// run, which is farther than a slope can be followed.
+// Nothing where the slope of the loss is not below 0 by its 95 % interval, where the time is more than 100 times the
+// run, which is farther than a slope can be followed, and where it is more than the study had, by its paths per pixel,
+// or the runs do not say theirs.
 std::optional<ReachedLater> reachedLater(const SceneLosses& scene, const std::string& method, const std::string& metric,
                                          double score);
 

@@ -34,8 +34,8 @@ std::optional<double> slopeThrough(const std::vector<LogPoint>& points) {
   return (n * sumXY - sumX * sumY) / spread;
 }
 
-// A score of a snapshot; nothing if it was not measured or is not finite.
-std::optional<double> scoreOf(const SnapshotRecord& snapshot, const std::string& metric) {
+// A value of a snapshot; nothing if it was not measured or is not finite.
+std::optional<double> valueOf(const SnapshotRecord& snapshot, const std::string& metric) {
   const auto value = snapshot.values.find(metric);
   if (value == snapshot.values.end() || !std::isfinite(value->second)) return std::nullopt;
   return value->second;
@@ -123,6 +123,19 @@ std::vector<const RunRecord*> SceneLosses::runs(const std::string& method) const
   return found;
 }
 
+bool SceneLosses::findUnbiased() const {
+  return std::ranges::all_of(results_.runs, [&](const RunRecord& run) {
+    const bool counts = run.scene == scene_ && !run.snapshots.empty();
+    return !counts || valueOf(run.snapshots.back(), kUnbiasedMse).value_or(0) > 0;
+  });
+}
+
+std::optional<double> SceneLosses::scoreOf(const SnapshotRecord& snapshot, const std::string& metric) const {
+  if (!isUnbiased(metric)) return valueOf(snapshot, metric);
+  const std::optional<double> mse = valueOf(snapshot, kUnbiasedMse);
+  return mse && *mse > 0 ? std::optional(std::sqrt(*mse)) : std::nullopt;
+}
+
 // The finite values of a function over the runs of a method. Runs without one are left out.
 std::vector<double> SceneLosses::perSeed(const std::string& method,
                                          const std::function<std::optional<double>(const RunRecord&)>& function) const {
@@ -146,7 +159,7 @@ std::vector<double> SceneLosses::logLosses(const std::string& method, const std:
 
 std::optional<double> SceneLosses::floorLoss(const std::string& metric) const {
   const SceneRecord* scene = results_.findScene(scene_);
-  if (scene == nullptr || !scene->noiseFloors.contains(metric)) return std::nullopt;
+  if (scene == nullptr || isUnbiased(metric) || !scene->noiseFloors.contains(metric)) return std::nullopt;
   return lossOf(metric, scene->noiseFloors.at(metric));
 }
 
@@ -220,7 +233,7 @@ std::vector<double> SceneLosses::errorSlopes(const std::string& method) const {
     const double from = run.snapshots.back().renderSeconds / kSlopeSpan * 0.999;
     std::vector<LogPoint> points;
     for (const SnapshotRecord& snapshot : run.snapshots) {
-      const std::optional<double> mse = scoreOf(snapshot, kUnbiasedMse);
+      const std::optional<double> mse = valueOf(snapshot, kUnbiasedMse);
       if (!mse || *mse <= 0 || snapshot.renderSeconds < from) continue;
       points.push_back({std::log(snapshot.renderSeconds), 0.5 * std::log(*mse)});
     }

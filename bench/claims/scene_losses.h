@@ -24,7 +24,7 @@ enum class PpmReading { photons, nextEvent };
 class SceneLosses {
  public:
   SceneLosses(std::string scene, const CampaignResults& results, PpmReading reading = PpmReading::photons)
-      : scene_(std::move(scene)), results_(results), reading_(reading) {}
+      : scene_(std::move(scene)), results_(results), reading_(reading), unbiased_(findUnbiased()) {}
   // Another scene of the same results, read in the same way.
   SceneLosses other(std::string scene) const { return {std::move(scene), results_, reading_}; }
 
@@ -37,6 +37,10 @@ class SceneLosses {
   std::string missing(const std::string& method) const;
   std::vector<const RunRecord*> runs(const std::string& method) const;
 
+  // Whether "rmse", here and below, is the root of kUnbiasedMse, without the noise of the reference. It is where all
+  // runs of the scene end with one above 0; else it is RMSE itself.
+  bool isUnbiased(const std::string& metric) const { return unbiased_ && metric == "rmse"; }
+
   // One number of each seed: the score at the end, the logarithm of its loss.
   std::vector<double> scores(const std::string& method, const std::string& metric) const;
   std::vector<double> logLosses(const std::string& method, const std::string& metric) const;
@@ -47,7 +51,7 @@ class SceneLosses {
   Band slopeBand(const std::string& method) const;  // of errorSlopes
   Band scoreBand(const std::string& method, const std::string& metric) const;
 
-  // The loss that the reference's own noise gives; nothing where that is not known.
+  // The loss that the reference's own noise gives; nothing where that is not known, and for losses without it.
   std::optional<double> floorLoss(const std::string& metric) const;
 
   // The logarithm of the time from which on each seed has at most this loss, between snapshots by straight lines over
@@ -68,6 +72,9 @@ class SceneLosses {
   std::vector<double> errorSlopes(const std::string& method) const;
 
  private:
+  bool findUnbiased() const;
+  // A score of a snapshot; nothing if it was not measured or is not finite.
+  std::optional<double> scoreOf(const SnapshotRecord& snapshot, const std::string& metric) const;
   std::vector<double> perSeed(const std::string& method,
                               const std::function<std::optional<double>(const RunRecord&)>& function) const;
   double seedSpread(const std::string& method, const std::string& metric) const;
@@ -75,6 +82,7 @@ class SceneLosses {
   std::string scene_;
   const CampaignResults& results_;
   PpmReading reading_;
+  bool unbiased_;
 };
 
 }  // namespace wavecrest

@@ -4,6 +4,7 @@ KILLS says how often the kill test kills campaigns, each a few times before it m
 """
 
 import contextlib
+import fcntl
 import json
 import os
 import pathlib
@@ -16,7 +17,7 @@ import time
 import unittest
 
 from campaign_harness import ROOM, RUNS, TINY, Converge, kind, rows
-from harness import INPUT, INTERRUPTED, TIMEOUT_SECONDS, USAGE, WAVECREST
+from harness import DONE, INPUT, INTERRUPTED, TIMEOUT_SECONDS, USAGE, WAVECREST
 
 KILLS = int(os.environ.get("KILLS", "3"))
 KILLS_OF_ONE = 4  # campaign, spread over its length
@@ -71,6 +72,14 @@ class Resuming(Converge):
         self.assertEqual(list(pathlib.Path(self.path("a")).rglob("*.tmp.*")), [])
         self.assertEqual(os.stat(self.path("a/images/cornell-diffuse.pt.1.0000.exr")).st_mtime_ns, stamp)
 
+    def test_images_of_a_scene_that_is_named_like_a_temporary_file_are_kept(self):
+        scene = self.write("room.tmp.xml", ROOM.replace("RADIANCE", "1"))
+        self.converge(scene, "--methods", "pt", "--size", "16x12", "--spp", "2", "--seeds", "1", "--out", "a")
+        before = self.image_names("a")
+        self.converge("--out", "a", "--resume", "--seeds", "2")
+        self.assertLess(set(before), set(self.image_names("a")))
+        self.assertTrue(os.path.exists(self.path("a/references/room.tmp.exr")))
+
     def test_resuming_needs_no_option_again_and_takes_no_other(self):
         self.tiny("a")
         before = rows(self.results("a"))
@@ -78,10 +87,11 @@ class Resuming(Converge):
         self.converge("--out", "a", "--resume")
         self.assertEqual(rows(self.results("a")), before)
         self.assert_one_error_line(self.converge("--out", "a", "--resume", "--time", "1s", expect=USAGE), r"--spp counts")
-        for other in (["--spp", "2"], ["--seeds", "1"], ["--profile", "standard"], ["--methods", "pt"],
-                      ["--size", "64x48"], ["--images", "last"]):  # fmt: skip
+        for other in (["--spp", "2"], ["--seeds", "1"], ["--profile", "standard"], ["--size", "64x48"],
+                      ["--images", "last"]):  # fmt: skip
             result = self.converge("--out", "a", "--resume", *other, expect=USAGE)
             self.assert_one_error_line(result, r".*was begun with .*; expected the same, more, or another --out")
+        self.converge("--out", "a", "--resume", "--methods", "pt", "--images", "all")
         self.assertEqual(rows(self.results("a")), before)
 
     def test_choices_of_the_profile_are_those_of_the_beginning(self):
@@ -159,7 +169,8 @@ class Extending(Converge):
             self.run_wavecrest("reference", scene, "--size", "20x20", "--spp", "8", "-o", f"given/{scene}.exr")
         small = ["--methods", "pt", "--seeds", "1", "--size", "20x20", "--spp", "1"]
         self.converge(scenes[0], *small, "--reference", "given", "--out", "a")
-        self.converge(scenes[1], "--out", "a", "--resume")
+        for _ in range(2):  # as after a kill
+            self.converge(scenes[1], "--out", "a", "--resume")
         for scene in scenes:
             given, taken = (pathlib.Path(self.path(f"{of}/{scene}.exr")).read_bytes() for of in ("given", "a/references"))
             self.assertEqual(given, taken)
@@ -368,6 +379,23 @@ class Shards(Converge):
         self.assertTrue(runs[0] and runs[1])
         self.assertFalse(runs[0] & runs[1], "no run is done twice")
         self.assertEqual(sorted(set(parts[0] + parts[1]), key=repr), rows(self.results("whole")))
+        self.assertEqual(self.image_names("parts"), self.image_names("whole"))
+
+    def test_shards_side_by_side_share_the_reference_that_one_of_them_renders(self):
+        os.makedirs(self.path("parts/references"))
+        shards = []
+        # The lock is held until both wait for it.
+        with open(self.path("parts/references/cornell-diffuse.exr.lock"), "w", encoding="utf-8") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            for i in (1, 2):
+                command = [WAVECREST, "converge", *TINY, "--out", "parts", "--shard", f"{i}/2"]
+                shards.append(subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL,
+                                               stderr=subprocess.PIPE, text=True))  # fmt: skip
+            for shard in shards:
+                self.assertTrue(any("waiting for another shard" in line for line in shard.stderr))
+        for shard in shards:
+            self.assertEqual(shard.communicate(timeout=TIMEOUT_SECONDS) and shard.returncode, DONE)
+        self.tiny("whole")
         self.assertEqual(self.image_names("parts"), self.image_names("whole"))
 
     def test_shards_by_time_need_a_reference_that_is_the_same_for_all(self):

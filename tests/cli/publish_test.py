@@ -6,13 +6,14 @@ import importlib.util
 import json
 import pathlib
 import re
+import shutil
 import sqlite3
 import subprocess
 import sys
 import types
 import unittest
 
-from harness import TIMEOUT_SECONDS, WAVECREST, CommandTest
+from harness import INPUT, TIMEOUT_SECONDS, WAVECREST, CommandTest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CAMPAIGN = ROOT / "bench" / "campaign"
@@ -78,7 +79,8 @@ class Publishing(CommandTest):
         subprocess.run([sys.executable, RESTORE, "published", "a"], cwd=self.folder, check=True, capture_output=True)
 
     def publish(self, readme=README, program=WAVECREST):
-        self.write("README.md", readme)
+        if readme:
+            self.write("README.md", readme)
         command = [sys.executable, PUBLISH, "a", "--wavecrest", program, "--to", "standard", "--readme", "README.md"]
         return subprocess.run(
             [*map(str, command)],
@@ -197,6 +199,24 @@ class Publishing(CommandTest):
         database.close()
         self.assertFalse(pathlib.Path(self.path("standard")).exists(), "nothing is written")
 
+    def test_runs_without_measurements_are_refused(self):
+        self.made_up_campaign()
+        database = sqlite3.connect(self.path("a/results.sqlite"))
+        database.execute("DELETE FROM measurement WHERE run = 1")
+        database.execute("DELETE FROM snapshot WHERE run = 1")
+        database.commit()
+        database.close()
+        self.assertIn("publish: cornell-diffuse pt seed 1: no measurements; expected", self.publish().stderr)
+        measurements = self.read("published/measurements.csv").splitlines()
+        self.write("published/measurements.csv", "\n".join(measurements[:-3]) + "\n")
+        for folder, pattern in (("published", "published: veach-door vcm-auto seed 1 is not in both"), ("none", ".*none/campaign.json")):
+            result = subprocess.run(
+                [sys.executable, RESTORE, folder, "c"], cwd=self.folder, capture_output=True, text=True, check=False
+            )
+            self.assertEqual(result.returncode, 1)
+            self.assertRegex(result.stderr, rf"^restore: {pattern}[^\n]*\n$")
+        self.assertFalse(pathlib.Path(self.path("c")).exists(), "nothing is written")
+
     def test_campaigns_by_iterations_are_refused(self):
         self.run_wavecrest("converge", "cornell-diffuse", "--methods", "pt", "--size", "32x24", "--spp", "2", "--out", "a")
         self.assertIn("counts iterations", self.publish().stderr)
@@ -227,7 +247,12 @@ class Publishing(CommandTest):
 
     def test_figures_have_what_was_measured(self):
         self.made_up_campaign()
+        (self.folder / "standard").mkdir()
+        for name in ("campaign.json", "cornell-glossy.relmse.svg"):
+            self.write(f"standard/{name}", "of an earlier page")
         self.assertEqual(self.publish().returncode, 0)
+        figures = {path.stem for path in pathlib.Path(self.path("standard")).glob("*.svg")}
+        self.assertEqual(figures, {*MADE_UP, "overview.relmse", "overview.ssim"}, "without those of an earlier page")
         figure = self.read("standard/cornell-diffuse.svg")
         self.assertIn("<image", figure, "the repository's reference, as restored results have no images")
         self.assertEqual(re.findall(r'class="name">([^<]*)<', figure), ["cornell-diffuse", "SSIM", "Time to equal relMSE"])
@@ -267,6 +292,30 @@ class Publishing(CommandTest):
         self.assertEqual(publish.band({**row, "low": "0.9948"}, "{:.3f}"), "0.994")
         for spread, shown in ((4.96e-4, "0.0005"), (3e-5, "0.00003"), (1e-4, "0.0001"), (9.7e-5, "0.0001")):
             self.assertEqual(publish.shown_spread(spread, "{:.3f}"), shown)
+
+    def test_facts_that_differ_name_their_scenes(self):
+        publish = publish_module()
+        runs = [("x", "pt", 1, {"cpu": "A"}), ("y", "pt", 1, {"cpu": "B"}), ("z", "pt", 1, {}), ("x", "lt", 1, {"cpu": "A"})]
+        campaign = types.SimpleNamespace(settings={"cpu": "A, B"}, runs=runs)
+        self.assertEqual(publish.by_scene(campaign, "cpu"), "A (x, z) and B (y)")
+        campaign.runs = runs[2:]
+        self.assertEqual(publish.by_scene(campaign, "cpu"), "A")
+
+    def test_references_that_the_repository_lacks_are_not_said_to_be_checked(self):
+        publish = publish_module()
+        stats = {"asked_seconds": 9.0, "threads": 2}
+
+        def notes(scenes, own=False):
+            settings = {"size": "1024x768", "clock": "cpu", "seeds": "2"}
+            campaign = types.SimpleNamespace(scenes=scenes, settings=settings, own_references=own, runs=[("x", "pt", 1, stats)])
+            return publish.study_notes(campaign)
+
+        agrees = "a second one agrees with it"
+        self.assertIn(f"{agrees}. How good", notes(["cornell-diffuse"]))
+        self.assertIn(f"{agrees}, but for of-others: of this machine, and not checked. How", notes(["cornell-diffuse", "of-others"]))
+        for text in (notes(["of-others"]), notes(["cornell-diffuse"], own=True)):
+            self.assertIn("they are those of this machine", text)
+            self.assertNotIn(agrees, text)
 
     def test_the_spread_of_seeds_is_that_of_the_standard_campaign(self):
         claims = ROOT / "bench" / "claims"
@@ -357,7 +406,18 @@ END
         self.run_wavecrest("converge", "cornell-mirror", "--out", "b", "--resume")
         self.assertEqual(rows("b", scores), before)
         runs = [(scene, method, seed) for scene in ("cornell-diffuse", "cornell-mirror") for method in ("lt", "pt") for seed in (1, 2)]
-        self.assertEqual(rows("b", "SELECT scene, method, seed FROM run ORDER BY scene, method, seed"), runs)
+        stored = "SELECT scene, method, seed FROM run ORDER BY scene, method, seed"
+        self.assertEqual(rows("b", stored), runs)
+        # Its first scene goes on with the reference of its runs, and with no other.
+        self.run_wavecrest("reference", "cornell-diffuse", "--size", "32x24", "--spp", "2", "-o", "other.exr")
+        reference, more = self.path("b/references/cornell-diffuse.exr"), ["converge", "--out", "b", "--resume", "--seeds", "3"]
+        shutil.copyfile(self.path("other.exr"), reference)
+        result = self.run_wavecrest(*more, expect=INPUT)
+        self.assertRegex(result.stderr, r"error: b/references/cornell-diffuse\.exr: has other noise floors than")
+        self.assertEqual(rows("b", stored), runs)
+        shutil.copyfile(self.path("a/references/cornell-diffuse.exr"), reference)
+        self.run_wavecrest(*more)
+        self.assertEqual(len(rows("b", stored)), 12)
 
     def test_a_figure_is_repeated_by_all_rows(self):
         for name in ("bench", "scenes", "tools"):
@@ -395,6 +455,10 @@ exec {WAVECREST} "$@"
         self.assertEqual(result.returncode, 1)
         self.assertIn("has no lines <!-- results -->", result.stderr)
         self.assertEqual(self.read("README.md"), "# A title\n")
+        pathlib.Path(self.path("README.md")).unlink()
+        result = self.publish(readme=None)
+        self.assertRegex(result.stderr, r"^publish: README\.md does not exist; expected [^\n]*\n$")
+        self.assertFalse(pathlib.Path(self.path("standard")).exists(), "nothing is written")
 
 
 if __name__ == "__main__":

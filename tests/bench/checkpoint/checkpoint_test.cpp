@@ -206,8 +206,9 @@ TEST_F(CheckpointTest, anUnfinishedWriteLeavesTheLastFile) {
   EXPECT_EQ(readFileBytes(file), before);
   folder_.write("file.tmp.1234.0", "left by one that was killed");
   folder_.write("other.tmp.1234.0", "of another file");
+  folder_.write("file.tmp.xml", "no temporary one");
   removeTemporaries(file);
-  EXPECT_EQ(filesInFolder(), 2);
+  EXPECT_EQ(filesInFolder(), 3);
   EXPECT_EQ(readFileBytes(file), before);
 }
 

@@ -74,7 +74,9 @@ TEST(Explanations, areOfKnownClaimsAndOneOfEachInAProfile) {
   ASSERT_EQ(explanations.size(), 2u);
   EXPECT_EQ(explanations[1].profile, "study");
   EXPECT_TRUE(isOf(explanations[1], "study", "c"));
+  EXPECT_TRUE(isOf(explanations[1], "study", "a, c")) << "it went on by another program";
   EXPECT_FALSE(isOf(explanations[1], "study", "b"));
+  EXPECT_FALSE(isOf(explanations[1], "study", "cc, b"));
   EXPECT_FALSE(isOf(explanations[1], "quick", "c"));
   EXPECT_EQ(explanations[1].verdict, "undecided");
   EXPECT_EQ(explanations[1].text, "so");

@@ -45,6 +45,16 @@ class MadeUp {
     results_.runs.push_back(run);
     return *this;
   }
+  // A run with these errors after 1, 2, 4, ... seconds, measured against a reference with this noise.
+  MadeUp& errors(const std::string& method, const std::vector<double>& values, double noise) {
+    std::vector<double> measured;
+    measured.reserve(values.size());
+    for (const double value : values) measured.push_back(std::hypot(value, noise));
+    curve(method, "rmse", measured);
+    std::vector<SnapshotRecord>& snapshots = results_.runs.back().snapshots;
+    for (size_t k = 0; k < values.size(); ++k) snapshots[k].values[kUnbiasedMse] = values[k] * values[k];
+    return *this;
+  }
   MadeUp& floor(const std::string& metric, double value) {
     results_.scenes[0].noiseFloors[metric] = value;
     return *this;
@@ -100,6 +110,9 @@ inline Condition condition(ConditionKind kind, const std::string& metric, const 
                            const std::vector<std::string>& than = {}) {
   return {.kind = kind, .metrics = {metric}, .methods = methods, .than = than};
 }
+
+// Stats of a run with a thousandth of the study's paths.
+inline const char* const kFewPaths = R"({"width": 10, "height": 10, "camera_paths": 879})";
 
 inline const std::string kHolds = "holds", kFails = "does not hold", kUndecided = "undecided",
                          kNotJudged = "not judged", kNotReached = "not reached in this time";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bench/claims/scene_losses.h"
 #include "tests/bench/claims/made_up_results.h"
 
 namespace wavecrest {
@@ -15,12 +16,13 @@ Condition reachesScore() {
   reaches.score = 0.9;
   return reaches;
 }
-// Runs of 16 s whose SSIM is 1 - scale / t^power.
+// Runs of 16 s whose SSIM is 1 - scale / t^power, of so few paths that the study had more time than is asked for here.
 MadeUp falling(MadeUp made, const std::string& method, double scale, double power) {
   std::vector<double> scores;
   for (unsigned k = 0; k < 5; ++k) scores.push_back(1 - scale * std::pow(2.0, -power * k));
-  return made.curve(method, "ssim", scores);
+  return made.curve(method, "ssim", scores).stats(kFewPaths);
 }
+
 TEST(JudgeClaims, aScoreThatIsReachedLaterIsNotReachedInThisTime) {
   // 0.8 / sqrt(t) is 0.2 at the end and 0.1 after 64 s. Points on a line tell it without error; curves that bend make
   // it 4^0.75 times as long or as short.
@@ -28,7 +30,8 @@ TEST(JudgeClaims, aScoreThatIsReachedLaterIsNotReachedInThisTime) {
   EXPECT_EQ(later.verdict, kNotReached);
   EXPECT_EQ(later.figure, "SSIM of pt is 0.8; at this rate 0.9 after 64 s (23 to 180 s)");
   // Points about the line leave no more room.
-  const ClaimRecord noisy = MadeUp().curve("pt", "ssim", {0.2, 0.43, 0.602, 0.715, 0.802}).judge(reachesScore());
+  const ClaimRecord noisy =
+      MadeUp().curve("pt", "ssim", {0.2, 0.43, 0.602, 0.715, 0.802}).stats(kFewPaths).judge(reachesScore());
   EXPECT_EQ(noisy.verdict, kNotReached);
   EXPECT_EQ(noisy.figure, "SSIM of pt is 0.802; at this rate 0.9 after 63 s (23 to 170 s)");
   // Nor do two seeds, with times of 60.5 and 67.7 s: 12.7 standard errors of the logarithm are a factor of 2.
@@ -41,6 +44,15 @@ TEST(JudgeClaims, aScoreThatIsReachedLaterIsNotReachedInThisTime) {
   EXPECT_EQ(falling(MadeUp(), "pt", 0.3, 0.5).verdict(misses), kFails);
 }
 
+// Both are least squares through the points after 4, 8 and 16 s.
+TEST(SceneLosses, slopeOfALossIsThatOfTheLineToATime) {
+  const MadeUp made = MadeUp().curve("pt", "ssim", {0.2, 0.43, 0.602, 0.715, 0.802});
+  const SceneLosses scene("s", made.results());
+  const auto time = scene.timeToLoss("pt", "ssim", 0.1);
+  ASSERT_TRUE(time);
+  EXPECT_NEAR(scene.lossSlopes("pt", "ssim", 16).at(0), time->slope.mean, 1e-12);
+}
+
 TEST(JudgeClaims, aLossThatFallsTooSlowlyOrNotAtAllDoesNotReachTheScore) {
   // 0.2 at the end, and half of it after 2^(1 / power) times as long: 91 and 114 times.
   EXPECT_EQ(falling(MadeUp(), "pt", 0.2 * std::pow(16, 1 / 6.5), 1 / 6.5).verdict(reachesScore()), kNotReached);
@@ -51,6 +63,22 @@ TEST(JudgeClaims, aLossThatFallsTooSlowlyOrNotAtAllDoesNotReachTheScore) {
   EXPECT_EQ(wavers.verdict, kFails) << "falls, but not beyond the interval of the slope";
   EXPECT_EQ(wavers.figure, "SSIM of pt is 0.82, limit 0.9");
   EXPECT_EQ(MadeUp().curve("pt", "ssim", {0.6, 0.7}).verdict(reachesScore()), kFails) << "two points tell no rate";
+}
+
+// Four times as long as the runs, which had this share of the study's 8,789 paths per pixel.
+TEST(JudgeClaims, aScoreThatTakesMoreThanTheStudysPathsIsMissed) {
+  const auto verdict = [](double share) {
+    const std::string stats = R"({"width": 10, "height": 10, "camera_paths": )" + std::to_string(878'906 * share) + "}";
+    return falling(MadeUp(), "pt", 0.8, 0.5).stats(stats).verdict(reachesScore());
+  };
+  EXPECT_EQ(verdict(0.2), kNotReached);
+  EXPECT_EQ(verdict(0.3), kFails);
+  EXPECT_EQ(falling(MadeUp(), "pt", 0.8, 0.5).stats("").verdict(reachesScore()), kFails) << "paths are not known";
+}
+
+TEST(JudgeClaims, anIntervalIsOpenBeyondAHundredTimesTheRun) {
+  const ClaimRecord later = falling(MadeUp(), "pt", 0.2 * std::pow(16, 1 / 6.5), 1 / 6.5).judge(reachesScore());
+  EXPECT_EQ(later.figure, "SSIM of pt is 0.8; at this rate 0.9 after 1400 s (49 s or longer)");
 }
 
 TEST(JudgeClaims, oneOfSeveralConditionsOrMethodsThatFailsDecides) {

@@ -1,6 +1,6 @@
 """The Slurm recipe of bench/campaign/slurm for real, on one node: arrays, dependencies, and tasks requeued in the middle.
 
-On request: ./check --steps slurm. Needs Debian's slurm-wlm and munge, and fails without.
+On request: ./check --steps slurm. Needs what tools/install-packages slurm installs, and fails without.
 """
 
 import os
@@ -39,7 +39,7 @@ class Recipe(unittest.TestCase):
     def setUpClass(cls):
         missing = [name for name in PROGRAMS if shutil.which(name, path=PATH) is None]
         if missing:
-            raise RuntimeError(f"{', '.join(missing)} not found; on Debian install slurm-wlm and munge")
+            raise RuntimeError(f"{', '.join(missing)} not found: tools/install-packages slurm")
         folder = tempfile.TemporaryDirectory(prefix="wavecrest_slurm_")
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
