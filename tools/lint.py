@@ -27,7 +27,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 LINT_BUILD = ROOT / "build" / "lint"
 VERSION = "14"  # other versions format and judge differently
 PREFERRED_ISA = "HWY_BASELINE_TARGETS=HWY_AVX2"
-MOST_CHANGED_UNITS = 24  # at some ten seconds each; a larger change has them spread over it
+MOST_CHANGED_UNITS = 12  # at some twenty seconds each; a larger change has them spread over it
 
 
 def find_tool(name):

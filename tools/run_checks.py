@@ -21,6 +21,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 JOBS = os.cpu_count() or 1
 TEST_TIMEOUT_SECONDS = 600
 SHOWN_LINES = 12  # of what a failed test said, in the summary
+# A build folder keeps the options of its last step: every step says those that some step changes.
+RELEASE_OPTIONS = ("-DWAVECREST_SHARED=ON", "-DWAVECREST_PYTHON=OFF", "-DWAVECREST_MPI=AUTO")
 
 
 class Tally:
@@ -52,6 +54,8 @@ def run(tally, name, command, **environment):
 
 def build(tally, preset, *options, targets=("all",)):
     """Configures and builds a preset or some targets of it, through ccache where there is one."""
+    if preset == "release":
+        options = (*RELEASE_OPTIONS, *options)  # of two values for an option the last counts
     if shutil.which("ccache"):
         options = ("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", *options)
     return run(tally, f"{preset}: configure", ["cmake", "--preset", preset, *options]) and run(
@@ -97,7 +101,7 @@ def test(tally, preset, *selection, batches=True, **environment):
 
 
 def step_release(tally):
-    if not build(tally, "release", "-DWAVECREST_SHARED=ON"):
+    if not build(tally, "release"):
         return
     if os.environ.get("CHECK_OFFLINE") == "1":
         print("CHECK_OFFLINE=1: the tests against Mitsuba (label oracle) are left out")
@@ -109,7 +113,7 @@ def step_release(tally):
 def python_options(tally):
     """The environment that the Python module is built for, and how to configure for it."""
     run(tally, "python: environment", ["tools/python-venv", "--python"])
-    return ("-DWAVECREST_SHARED=ON", "-DWAVECREST_PYTHON=ON", f"-DPython_EXECUTABLE={ROOT}/build/venv/bin/python")
+    return ("-DWAVECREST_PYTHON=ON", f"-DPython_EXECUTABLE={ROOT}/build/venv/bin/python")
 
 
 def step_python(tally):
@@ -125,7 +129,7 @@ def step_long(tally):
 
 def step_thorough(tally):
     """Statistical tests with all their samples (tests/effort.h), of which other runs take a quarter."""
-    if build(tally, "release", "-DWAVECREST_SHARED=ON"):
+    if build(tally, "release"):
         test(tally, "release", "--label-regex", "^(kernel|render|slow|unit)$", batches=False, WAVECREST_THOROUGH="1")
 
 
@@ -165,7 +169,7 @@ def sanitize(tally, targets):
         tests = rf"^({'|'.join(targets)})[.]batch"
         if "load_fuzz_test" in targets:
             tests += "|^fuzz[.]load$"
-        test(tally, "asan-ubsan", "--tests-regex", tests, UBSAN_OPTIONS="print_stacktrace=1")
+        test(tally, "asan-ubsan", "--tests-regex", tests, UBSAN_OPTIONS="print_stacktrace=1", WAVECREST_FUZZ_CASES="500")
 
 
 def step_sanitizers(tally):
@@ -191,8 +195,10 @@ def step_tsan(tally):
 
 
 def step_slurm(tally):
-    """The Slurm recipe, on a cluster of this machine alone (Debian's slurm-wlm and munge)."""
-    if build(tally, "release", targets=("wavecrest",)):
+    """The Slurm recipe, on a cluster of this machine alone."""
+    if run(tally, "slurm: packages", ["tools/install-packages", "slurm"]) and build(
+        tally, "release", targets=("wavecrest",)
+    ):
         test(tally, "release", "--label-regex", "^slurm$")
 
 
@@ -200,7 +206,7 @@ def step_mpi(tally):
     """Processes of Open MPI that share a render, and the ratio of their speed to that of threads."""
     if not run(tally, "mpi: packages", ["tools/install-packages", "mpi"]):
         return
-    if build(tally, "release", "-DWAVECREST_SHARED=ON", "-DWAVECREST_MPI=ON", targets=("wavecrest",)):
+    if build(tally, "release", "-DWAVECREST_MPI=ON", targets=("wavecrest",)):
         test(tally, "release", "--label-regex", "^mpi$")
         methods = ["--methods", "pt,vcm", "--seconds", "2", "--rounds", "3"]
         run(tally, "mpi: against threads", ["bench/ranks/against-threads", "build/release/wavecrest", *methods])

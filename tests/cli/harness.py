@@ -16,6 +16,9 @@ import time
 import unittest
 
 WAVECREST = os.environ["WAVECREST"]
+# Variables of whoever runs the tests would change what is rendered: WAVECREST_SIZE, WAVECREST_SCENES and their like.
+for _name in [name for name in os.environ if name.startswith("WAVECREST_")]:
+    del os.environ[_name]
 TIMEOUT_SECONDS = 300
 
 DONE, FAILURE, USAGE, INPUT, CHECK, INTERRUPTED = 0, 1, 2, 3, 4, 130

@@ -78,14 +78,14 @@ class Render(Signals):
         self.assertGreater(json.loads(output)["camera_paths"], 0)
 
     def test_a_saved_render_is_the_same_in_the_end(self):
-        arguments = ["-m", "vcm", "--spp", "400", "-o"]
+        arguments = ["-m", "vcm", "--spp", "20000", "-o"]  # seconds
         self.run_wavecrest("render", *SMALL, *arguments, "whole.pfm")
         process = self.start("render", *SMALL, *arguments, "saved.pfm", "--progress", "jsonl")
         process.stderr.readline()  # from here on it heeds signals
-        for _ in range(5):
-            time.sleep(0.1)
-            if process.poll() is None:
-                process.send_signal(signal.SIGUSR1)
+        for _ in range(3):
+            self.save(process, "saved.pfm")
+            self.assertIsNone(process.poll())
+            os.remove(self.path("saved.pfm"))
         self.end(process, DONE)
         whole, saved = (pathlib.Path(self.path(name)).read_bytes() for name in ("whole.pfm", "saved.pfm"))
         self.assertEqual(whole, saved)

@@ -2,6 +2,9 @@
 
 import json
 import os
+import pathlib
+import subprocess
+import sys
 import unittest
 
 from harness import DONE, INPUT, USAGE, CommandTest, read_json
@@ -265,6 +268,12 @@ class Usage(CommandTest):
         # Commands without the option do not read it.
         self.run_wavecrest("scenes", variables={"WAVECREST_SEED": "six"})
         self.run_wavecrest("--config", "absent.toml", "scenes", expect=USAGE)
+
+    def test_variables_of_the_caller_reach_no_test(self):
+        command = [sys.executable, "-c", "import harness, os; print(sorted(set(os.environ) & {'WAVECREST_SIZE', 'WAVECREST'}))"]
+        result = subprocess.run(command, cwd=pathlib.Path(__file__).parent, env=os.environ | {"WAVECREST_SIZE": "8x8"},
+                                capture_output=True, text=True, check=True)  # fmt: skip
+        self.assertEqual(result.stdout, "['WAVECREST']\n")
 
     def test_commands_that_several_processes_cannot_share_are_refused_after_options_too(self):
         self.write("render", "")

@@ -1,4 +1,4 @@
-"""Folders do not include each other in circles: each can be read, tested and moved with those below it alone."""
+"""Folders do not include each other in circles, and texts about the source tree say what is in it."""
 
 import pathlib
 import re
@@ -57,6 +57,22 @@ class Folders(unittest.TestCase):
 
     def test_a_circle_is_found(self):
         self.assertEqual(find_circle({"a": {"b": "ab"}, "b": {"c": "bc"}, "c": {"b": "cb"}}), ["bc", "cb"])
+
+
+class Texts(unittest.TestCase):
+    def test_the_tour_has_each_folder_of_the_engine(self):
+        tour = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+        for folder in sorted(path for path in (ROOT / "engine").iterdir() if path.is_dir()):
+            self.assertIn(f"`engine/{folder.name}/`", tour)
+
+    def test_stages_are_counted_as_in_the_catalogue(self):
+        families = re.findall(r'STAGE\(\w+, "[^"]+", \w+, (\w+),', (ROOT / "kernels/stage_catalogue.h").read_text())
+        text = (ROOT / "kernels/README.md").read_text(encoding="utf-8")
+        rows = re.findall(r"^\| [^|]+ \| (\d+) \| [^|]+ \| (\d+) \|$", text, re.MULTILINE)
+        counts = [families.count(family) for family in ("featured", "bidirectional", "common")]
+        self.assertEqual([int(functions) for functions, _ in rows[:3]], counts)
+        (told,) = re.findall(r"each instruction set, (\d+) in all", text)
+        self.assertEqual(int(told), sum(int(instances) for _, instances in rows))
 
 
 if __name__ == "__main__":

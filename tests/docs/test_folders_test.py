@@ -47,6 +47,12 @@ class Folders(unittest.TestCase):
             names = [case["name"] for case in group["cases"]]
             self.assertEqual(len(set(names)), len(names), group["name"])
 
+    def test_files_of_a_test_lie_in_a_folder_of_its_process(self):
+        # By a fixed name in /tmp, tests of two builds that run at once meet: tests/metrics/temporary_folder.h.
+        for file in sorted((ROOT / "tests").rglob("*.[ch]*")):
+            if file.suffix in (".cpp", ".h"):
+                self.assertNotIn("testing::TempDir()) /", file.read_text(), file)
+
     def test_shared_folders_are_found(self):
         told = {"a": "/t/a", "b": "/t/b", "c": "/t/a", "d": "/t/b/d"}
         text = "\n".join(f'add_test({name} "x" "--out" "{folder}")' for name, folder in told.items())

@@ -2,9 +2,9 @@
 
     oracle_test.py --wavecrest PROGRAM --renders ORACLE_RENDERS (--group NAME | --case NAME) [--method METHOD] --out FOLDER
 
-A group is one process, because starting Mitsuba takes longer than a small picture, and Mitsuba renders each scene once
-for all methods. The images of wavecrest come from oracle_renders, one process for all seeds, and the first of them must be
-what the program writes. Status 0 if all are the same.
+A group is one process, because starting Mitsuba takes longer than a small picture. Mitsuba renders each scene once for
+all methods, and for later runs (picture_cache.py). The images of wavecrest come from oracle_renders, one process for all
+seeds, and the first of them must be what the program writes. Status 0 if all are the same.
 Otherwise 1, and FOLDER/NAME-METHOD of each scene that differs holds wavecrest.exr, mitsuba.exr (means over all renders)
 and z.exr (per 8 x 8 tile and channel, how many standard deviations wavecrest is too bright).
 """
@@ -15,6 +15,7 @@ import json
 import pathlib
 import shutil
 import sys
+import time
 
 import numpy as np
 
@@ -46,7 +47,8 @@ class Case:
         depths = ("--max-depth", self.max_depth, "--rr-depth", renderers.RUSSIAN_ROULETTE_DEPTH)
         # The bias of merges of the study's radius is far below the noise.
         radius = ("--radius", "0.001") if method == "vcm" else ()
-        return renderers.WavecrestRun(self.scene, method, spp, self.size, (*depths, *radius, *options))
+        # One thread: pictures this small are over before others have begun, and tests run beside each other.
+        return renderers.WavecrestRun(self.scene, method, spp, self.size, (*depths, *radius, *options, "--threads", 1))
 
 
 def read_cases(group=None, name=None, method=None):
@@ -84,6 +86,7 @@ def same_picture(programs, case, method, mitsuba, theirs, out):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
 
+    begin = time.monotonic()
     run = case.run(method)
     ours = renderers.render_seeds(programs.renders, run, SEEDS, theirs.shape[1:])
     written = renderers.render_wavecrest(programs.wavecrest, run, SEEDS[0], folder, mitsuba.read_exr)
@@ -93,7 +96,7 @@ def same_picture(programs, case, method, mitsuba, theirs, out):
         sys.exit(f"oracle_test: {case.name}: wavecrest gave the same image for two seeds; expected independent ones")
 
     verdict = image_statistics.compare(ours, theirs)
-    print(f"oracle_test: {case.name} by {method}: {verdict.summary()}", flush=True)
+    print(f"oracle_test: {case.name} by {method}: {verdict.summary()}; {time.monotonic() - begin:.1f} s", flush=True)
     if verdict.equal:
         shutil.rmtree(folder)
     else:
@@ -104,7 +107,9 @@ def same_picture(programs, case, method, mitsuba, theirs, out):
 def same_pictures(programs, case, out):
     """Whether all methods of a case agree with Mitsuba."""
     mitsuba = renderers.MitsubaScene(case.reference, case.size, case.max_depth, any_filter=case.filters)
-    theirs = mitsuba.render(case.spp, SEEDS)
+    begin = time.monotonic()
+    theirs = mitsuba.kept(case.spp, SEEDS)
+    print(f"oracle_test: {case.name} by Mitsuba: {time.monotonic() - begin:.1f} s", flush=True)
     return all([same_picture(programs, case, method, mitsuba, theirs, out) for method in case.methods])
 
 

@@ -5,6 +5,8 @@ film size, path depth and roulette depth; the film's filter has to be a box in t
 """
 
 import dataclasses
+import functools
+import importlib.metadata
 import pathlib
 import subprocess
 import sys
@@ -12,6 +14,7 @@ import sys
 import numpy as np
 
 import exact_blend
+import picture_cache
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
@@ -40,18 +43,31 @@ class MitsubaScene:
         text = scene_xml.flatten(path, size=size, defaults=defaults)
         if (kind := scene_xml.filter_type(text)) != "box" and not any_filter:
             raise ValueError(f"{path}: reconstruction filter '{kind}'; expected box for a comparison pixel by pixel")
-        self.scene = self.mitsuba.load_string(with_exact_blends(text))
-        self.integrator = self.mitsuba.load_dict(
-            {
-                "type": "path",
-                "max_depth": max_depth,
-                "rr_depth": RUSSIAN_ROULETTE_DEPTH,
-                "hide_emitters": scene_xml.hides_emitters(text),
-            }
-        )
+        self.text = with_exact_blends(text)
+        self.path = {
+            "type": "path",
+            "max_depth": max_depth,
+            "rr_depth": RUSSIAN_ROULETTE_DEPTH,
+            "hide_emitters": scene_xml.hides_emitters(text),
+        }
+
+    @functools.cached_property
+    def scene(self):
+        return self.mitsuba.load_string(self.text)
+
+    @functools.cached_property
+    def integrator(self):
+        return self.mitsuba.load_dict(self.path)
 
     def render(self, spp, seeds):
         return render_mitsuba(self.mitsuba, self.scene, self.integrator, spp, seeds)
+
+    def kept(self, spp, seeds):
+        """What render() returns, or has returned in an earlier run."""
+        versions = [importlib.metadata.version(package) for package in ("mitsuba", "drjit")]
+        blend = pathlib.Path(exact_blend.__file__).read_text(encoding="utf-8")
+        name = picture_cache.name_of(self.text, self.path, spp, list(seeds), versions, blend)
+        return picture_cache.kept(name, lambda: self.render(spp, seeds))
 
     def read_exr(self, path):
         bitmap = self.mitsuba.Bitmap(str(path))

@@ -45,6 +45,7 @@ Choices read(int count, char** words) {
       {"--rr-depth", [&](const std::string& value) { render.rrDepth = std::stoi(value); }},
       {"--radius", [&](const std::string& value) { render.radius = std::stod(value); }},
       {"--instances", [&](const std::string& value) { render.instances = value; }},
+      {"--threads", [&](const std::string& value) { render.threads = static_cast<uint32_t>(std::stoul(value)); }},
       {"--mlt", [&](const std::string& value) { render.mlt = value; }},
   };
   for (int i = 0; i < count; i += 2) {

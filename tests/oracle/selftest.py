@@ -1,12 +1,17 @@
 """Tests of the oracle harness itself: an oracle that cannot fail, or that cries wolf, is worth nothing."""
 
 import functools
+import os
+import pathlib
+import tempfile
 import unittest
+from unittest import mock
 
 import numpy as np
 from scipy import stats
 
 import image_statistics
+import picture_cache
 import renderers
 
 SCENES = renderers.ROOT / "tests" / "oracle" / "scenes"
@@ -79,6 +84,41 @@ class Statistics(unittest.TestCase):
         test, reference = noise(generator, 16), noise(generator, 16)
         test[3, 1, 1, 0] = np.nan
         self.assertFalse(image_statistics.compare(test, reference).equal)
+
+
+class Kept(unittest.TestCase):
+    """Pictures that are kept from run to run."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="wavecrest_oracle_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        variables = mock.patch.dict(os.environ, {"XDG_CACHE_HOME": folder.name})
+        variables.start()
+        self.addCleanup(variables.stop)
+
+    def test_they_are_rendered_once_unless_damaged(self):
+        render = mock.Mock(return_value=np.arange(6, dtype=np.float32).reshape(1, 1, 2, 3))
+        for _ in range(2):
+            np.testing.assert_array_equal(picture_cache.kept("a", render), render.return_value)
+        self.assertEqual(render.call_count, 1)
+        (file,) = (self.folder / "wavecrest" / "oracle").iterdir()
+        for damaged in (b"", file.read_bytes()[:-1]):
+            file.write_bytes(damaged)
+            np.testing.assert_array_equal(picture_cache.kept("a", render), render.return_value)
+        self.assertEqual(render.call_count, 3)
+        picture_cache.kept("b", render)
+        self.assertEqual(render.call_count, 4)
+
+    def test_their_name_follows_from_the_content_of_files_and_not_from_where_they_lie(self):
+        def name(file, content, *facts):
+            (self.folder / file).write_text(content)
+            return picture_cache.name_of(f'<string value="{self.folder / file}"/>', *facts)
+
+        first = name("a", "one", 64, [1, 2])
+        self.assertEqual(name("b", "one", 64, [1, 2]), first)
+        others = {name("a", "two", 64, [1, 2]), name("a", "one", 32, [1, 2]), name("a", "one", 64, [1])}
+        self.assertEqual(len(others - {first}), 3)
 
 
 class MitsubaAgainstItself(unittest.TestCase):

@@ -2,23 +2,18 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "scenes/generate/assets.h"
 #include "scenes/generate/dragon.h"
+#include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest::generate {
 namespace {
 
 class DragonScan : public testing::Test {
  protected:
-  ~DragonScan() override { std::filesystem::remove(file_); }
-
-  std::filesystem::path write(const std::string& text) {
-    std::ofstream(file_) << text;
-    return file_;
-  }
+  std::filesystem::path write(const std::string& text) const { return files_.write("scan", text); }
 
   void expectRefused(const std::string& text, const std::string& reason) {
     try {
@@ -26,13 +21,12 @@ class DragonScan : public testing::Test {
       FAIL() << "expected an exception for " << text;
     } catch (const std::runtime_error& error) {
       EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
-      EXPECT_NE(std::string(error.what()).find(file_.string()), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find(files_.path("scan")), std::string::npos) << error.what();
     }
   }
 
  private:
-  std::filesystem::path file_ = std::filesystem::path(testing::TempDir()) /
-                                ("scan-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const test::TemporaryFolder files_;
 };
 
 const std::string kHeader =
@@ -79,8 +73,9 @@ TEST_F(DragonScan, LargerTrianglesWeighMoreInANormal) {
 }
 
 TEST(Dragon, AbsentScanSaysHowToGetIt) {
+  const test::TemporaryFolder files;
   try {
-    findAsset("dragon_res2.ply").write(std::filesystem::path(testing::TempDir()) / "dragon_res2.ply");
+    findAsset("dragon_res2.ply").write(files.path("dragon_res2.ply"));
     FAIL() << "expected an exception";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("scenes/fetch-dragon"), std::string::npos) << error.what();

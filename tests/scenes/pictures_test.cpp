@@ -9,6 +9,7 @@
 #include "scenes/generate/assets.h"
 #include "scenes/generate/environment.h"
 #include "scenes/generate/pictures.h"
+#include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest::generate {
 namespace {
@@ -67,8 +68,8 @@ std::string bytesOf(const std::filesystem::path& file) {
 }
 
 TEST(Assets, AreTheSameBytesOnEveryRun) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "wavecrest_assets";
-  std::filesystem::create_directories(folder);
+  const test::TemporaryFolder files;
+  const std::filesystem::path& folder = files.folder();
   for (const char* name : {"sky.exr", "wood.png", "normals.png", "teapot_glass.ply"}) {
     const Asset& asset = findAsset(name);
     asset.write(folder / "first");
@@ -76,12 +77,11 @@ TEST(Assets, AreTheSameBytesOnEveryRun) {
     ASSERT_GT(bytesOf(folder / "first").size(), 1000u) << name;
     EXPECT_EQ(bytesOf(folder / "first"), bytesOf(folder / "second")) << name;
   }
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Assets, AFailedWriteNamesTheFileAndLeavesNothing) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "wavecrest_absent";
-  std::filesystem::remove_all(folder);
+  const test::TemporaryFolder files;
+  const std::filesystem::path folder = files.folder() / "absent";
   try {
     findAsset("teapot.ply").write(folder / "teapot.ply");
     FAIL() << "expected an exception";

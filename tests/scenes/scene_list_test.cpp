@@ -9,6 +9,8 @@
 #include <set>
 #include <vector>
 
+#include "tests/metrics/temporary_folder.h"
+
 namespace wavecrest {
 namespace {
 
@@ -83,8 +85,9 @@ TEST(SceneList, FindsEveryScene) {
 TEST(SceneList, TakesAnythingElseAsAPath) { EXPECT_EQ(findScene("some/where.xml"), fs::path("some/where.xml")); }
 
 TEST(SceneList, TheEnvironmentChoosesTheFolder) {
-  const ScopedVariable variable("WAVECREST_SCENES", testing::TempDir());
-  EXPECT_EQ(findScene("veach-door"), fs::path(testing::TempDir()) / "veach-door.xml");
+  const test::TemporaryFolder files;
+  const ScopedVariable variable("WAVECREST_SCENES", files.folder().string());
+  EXPECT_EQ(findScene("veach-door"), files.folder() / "veach-door.xml");
 }
 
 TEST(SceneList, AFolderThatDoesNotExistIsAnError) {
