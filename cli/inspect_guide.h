@@ -15,7 +15,8 @@ struct GuideOptions {
 };
 
 // Renders the scene by gpt for the given time, prints what was learned, and writes the picture: directions laid out as
-// in Mitsuba's environment maps, values in draws per steradian. Throws UsageError.
+// in Mitsuba's environment maps, values in draws per steradian. Throws UsageError,
+// and InputError where the pixel sees no rough surface.
 void writeGuidePicture(const Scene& scene, RenderSettings settings, const GuideOptions& options);
 
 }  // namespace wavecrest
