@@ -19,6 +19,7 @@ struct MeshFaces {
   std::vector<FaceCorners> quads;
   std::vector<uint32_t> triangles;  // which of the mesh's are left, unless allTriangles
   bool allTriangles = false;        // the triangles are those of the mesh, as they are
+  bool canTurn = false;             // it does not matter which corner of a triangle is the first
 
   size_t triangleCount(const Mesh& mesh) const { return allTriangles ? mesh.triangles.size() : triangles.size(); }
   const FaceCorners& triangle(const Mesh& mesh, size_t i) const {

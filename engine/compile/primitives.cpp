@@ -181,11 +181,16 @@ const PrimitiveList::Run& PrimitiveList::runOf(size_t index) const {
 }
 
 // The vertices of a face in the mesh. The second and third of a mirrored copy are swapped, so that its normal stays on
-// its side.
+// its side. Of long thin triangles the shortest edge begins or ends at the second (intersectFaces).
 FaceCorners PrimitiveList::cornersOf(const Run& run, size_t index) const {
   const size_t i = index - run.first;
   FaceCorners corners = run.kind == PrimitiveKind::quad ? run.faces->quads[i] : run.faces->triangle(*run.mesh, i);
   if (run.placed != nullptr && run.placed->mirrors) std::swap(corners[1], corners[2]);
+  if (run.kind == PrimitiveKind::quad || !run.faces->canTurn) return corners;
+  const Double3 a = cornerOf(run, corners[0]), b = cornerOf(run, corners[1]), c = cornerOf(run, corners[2]);
+  const Double3 ab = b - a, bc = c - b, ca = a - c;
+  constexpr double kThin = 16;  // squared ratio of edges
+  if (kThin * dot(ca, ca) < std::min(dot(ab, ab), dot(bc, bc))) return {corners[1], corners[2], corners[0]};
   return corners;
 }
 

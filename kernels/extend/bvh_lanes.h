@@ -41,7 +41,7 @@ WAVECREST_INLINE Number edgeFunction(Vec3<Number> p, Vec3<Number> q) {
 }
 
 // Rays against triangles with corners a, b, c relative to the origins, they and the directions in the order of RayAxes.
-// shear: of laidAcross. inside: a mask.
+// In long thin ones the shortest edge begins or ends at b. shear: of laidAcross. inside: a mask.
 //
 // The distance is that of the plane and not a mean of the corners' depths: next to a wall the latter would err by the
 // rounding of the farthest corner, and a ray that starts in a corner of a room could find the wall behind it.
@@ -57,10 +57,9 @@ WAVECREST_INLINE FaceHit<Number> intersectFaces(Vec3<Number> a, Vec3<Number> b, 
   const Number zero(0.0f);
   const Number least = min(first, min(hit.second, hit.third)), most = max(first, max(hit.second, hit.third));
   inside = (least >= zero) | (most <= zero);
-  // Two edges, of which one is the shortest or nearly so: the product of two long ones that are almost parallel rounds
-  // to another plane. A triangle seen from its edge covers nothing: 0 / 0 is no distance.
-  const Vec3<Number> ab = b - a, ac = c - a, bc = c - b;
-  const Vec3<Number> normal = cross(ab, select(length2(bc) < length2(ac), bc, ac));
+  // Of the edges at b: the product of two long ones that are almost parallel would round to another plane. A triangle
+  // seen from its edge covers nothing: 0 / 0 is no distance.
+  const Vec3<Number> normal = cross(b - a, c - b);
   hit.t = dot(normal, a) / dot(normal, direction);
   return hit;
 }

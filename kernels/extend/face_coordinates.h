@@ -12,8 +12,9 @@ WAVECREST_INLINE HitCoordinates<Float> coordinatesInFace(UInt id, Float second, 
   const UInt kind = shiftRight<kFaceKindShift>(id);
   const auto is = [&](FaceKind k) HWY_ATTR { return kind == UInt(static_cast<uint32_t>(k)); };
   const Mask lower = is(FaceKind::lowerHalf), upper = is(FaceKind::upperHalf), sphere = is(FaceKind::sphere);
-  const Float both = second + third;
-  const auto at = insideEdges(select(lower, both, second), select(upper, both, third), !(lower | upper));
+  const Float both = second + third, one(1);
+  const auto at = insideEdges(select(lower, both, select(upper, one - both, second)), select(upper, one - third, third),
+                              !(lower | upper));
   return {select(sphere, second, at.u), select(sphere, third, at.v)};
 }
 

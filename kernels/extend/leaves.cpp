@@ -95,15 +95,16 @@ LeafMaker::LeafMaker(PrimitiveSource primitives, const ParallelFor& parallelFor)
   });
 }
 
-// The welded corners of a triangle, or of one half of a quad. Their order fits coordinatesInFace (face_coordinates.h),
-// which makes (u, v) from the weights of the second and third corner.
+// The welded corners of a triangle, or of one half of a quad with the quad's own corner as the second one
+// (intersectFaces). Their order fits coordinatesInFace (face_coordinates.h), which makes (u, v) from the weights of the
+// second and third corner.
 LeafMaker::Triangle LeafMaker::cornersOf(uint32_t id) const {
   const PrimitiveRecord<double> record = primitives_.at(id & kFacePrimitiveMask);
   const double edge2 = shortestEdge2(record);
   // A quad is cut along its diagonal from (0, 0) to (1, 1).
   const auto at = [&](double u, double v) { return weld_(cornerAt(record, u, v), edge2); };
   if (faceKindOf(id) == FaceKind::lowerHalf) return {at(0, 0), at(1, 0), at(1, 1)};
-  if (faceKindOf(id) == FaceKind::upperHalf) return {at(0, 0), at(1, 1), at(0, 1)};
+  if (faceKindOf(id) == FaceKind::upperHalf) return {at(1, 1), at(0, 1), at(0, 0)};
   return {at(0, 0), at(1, 0), at(0, 1)};
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -76,6 +77,25 @@ TEST(MeshFaces, stayTrianglesWhereTheirSidesOfTheEdgeDiffer) {
   mesh = splitSquare();
   mesh.normals[4] = {0, 0.6f, 0.8f};
   EXPECT_EQ(quads(mesh), 0u) << "normals";
+}
+
+// A long thin triangle, with its corners in every order.
+TEST(PrimitiveList, turnsThinTrianglesToAShortEdgeAtTheSecondCorner) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {4, 1, 0}, {4, 1.01f, 0}};
+  for (uint32_t first = 0; first < 3; ++first) {
+    for (const uint32_t step : {1u, 2u}) {
+      mesh.triangles = {{first, (first + step) % 3, (first + 2 * step) % 3}};
+      Scene scene;
+      addShape(scene, mesh, addDiffuse(scene, 0.5, 0.5, 0.5));
+      const PrimitiveList list(scene, false, inTurn);
+      const auto record = list.geometry<double>(0);
+      const Double3 ab{record.e1[0], record.e1[1], record.e1[2]}, ac{record.e2[0], record.e2[1], record.e2[2]};
+      const double least = std::min(dot(ab, ab), dot(ac - ab, ac - ab));
+      EXPECT_LT(least, 1e-3) << first << ' ' << step;
+      EXPECT_EQ(record.normal[2], step == 1 ? 1 : -1);
+    }
+  }
 }
 
 }  // namespace
