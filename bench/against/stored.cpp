@@ -33,6 +33,7 @@ std::vector<double> visitsOfOneThread(const Json& method) {
     }
   }
   std::vector<double> medians;
+  medians.reserve(visits.size());
   for (const auto& [visit, values] : visits) medians.push_back(median(values));
   return medians;
 }
