@@ -115,7 +115,7 @@ TEST(MemoryPlan, hasRoomForLightVerticesWhereTheyAreStored) {
 // With one light path per pixel no photon would be found.
 TEST(MemoryPlan, methodsThatOnlyMergeHaveLightPathsOnAFilmOfOnePixel) {
   const Scene scene = sceneFile("cornell-diffuse", 1, 1);
-  const auto lightPaths = [&](RenderSettings settings) { return planMemory(scene, settings).lightPaths; };
+  const auto lightPaths = [&](const RenderSettings& settings) { return planMemory(scene, settings).lightPaths; };
   for (const Method method : {Method::ppm, Method::bpm}) {
     RenderSettings settings = plannedSettings(method);
     EXPECT_EQ(lightPaths(settings), kLeastLightPaths);
