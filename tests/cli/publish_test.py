@@ -1,8 +1,6 @@
 """bench/campaign/publish: what it writes is what the campaign measured, and nothing is published half."""
 
 import csv
-import importlib.machinery
-import importlib.util
 import json
 import pathlib
 import re
@@ -17,11 +15,12 @@ from harness import INPUT, TIMEOUT_SECONDS, WAVECREST, CommandTest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CAMPAIGN = ROOT / "bench" / "campaign"
-sys.path.insert(0, str(CAMPAIGN))
+sys.path[:0] = [str(CAMPAIGN), str(ROOT / "tests")]
 PUBLISH, RESTORE = CAMPAIGN / "publish", CAMPAIGN / "restore"
 import curves  # noqa: E402
 import scene_figure  # noqa: E402
 import svg_plot  # noqa: E402
+from program_module import program_module  # noqa: E402
 
 README = "# A title\n\n<!-- results -->\nold\n<!-- /results -->\n\nThe end.\n"
 
@@ -44,14 +43,6 @@ MADE_UP = {
     "lafortune-room": {"pt": PT, "bpt": FAST},
     "veach-door": {"bpt": SLOW, "vcm-auto": FAST},
 }
-
-
-def publish_module():
-    """bench/campaign/publish, a program without an ending, as a module."""
-    loader = importlib.machinery.SourceFileLoader("publish", str(PUBLISH))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("publish", loader))
-    loader.exec_module(module)
-    return module
 
 
 class Publishing(CommandTest):
@@ -285,7 +276,7 @@ class Publishing(CommandTest):
         self.assertEqual(svg_plot.legend(["pt", "vcm-auto"])[1], 1)
 
     def test_spreads_are_never_shown_as_zero(self):
-        publish = publish_module()
+        publish = program_module("bench/campaign/publish")
         row = {"mean": "0.9944", "low": "0.9940", "high": "0.9948", "seeds": "2"}
         self.assertEqual(publish.band(row, "{:.3f}"), "0.994 <sub>±0.0004</sub>")
         self.assertEqual(publish.band({**row, "low": "0.99", "high": "0.9988"}, "{:.3f}"), "0.994 <sub>±0.004</sub>")
@@ -294,7 +285,7 @@ class Publishing(CommandTest):
             self.assertEqual(publish.shown_spread(spread, "{:.3f}"), shown)
 
     def test_facts_that_differ_name_their_scenes(self):
-        publish = publish_module()
+        publish = program_module("bench/campaign/publish")
         runs = [("x", "pt", 1, {"cpu": "A"}), ("y", "pt", 1, {"cpu": "B"}), ("z", "pt", 1, {}), ("x", "lt", 1, {"cpu": "A"})]
         campaign = types.SimpleNamespace(settings={"cpu": "A, B"}, runs=runs)
         self.assertEqual(publish.by_scene(campaign, "cpu"), "A (x, z) and B (y)")
@@ -302,7 +293,7 @@ class Publishing(CommandTest):
         self.assertEqual(publish.by_scene(campaign, "cpu"), "A")
 
     def test_references_that_the_repository_lacks_are_not_said_to_be_checked(self):
-        publish = publish_module()
+        publish = program_module("bench/campaign/publish")
         stats = {"asked_seconds": 9.0, "threads": 2}
 
         def notes(scenes, own=False):

@@ -1,28 +1,20 @@
 """bench/extremes/lost-samples goes on with what is in its folder, and with nothing else."""
 
 import argparse
-import importlib.machinery
-import importlib.util
 import json
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
-LOST_SAMPLES = pathlib.Path(__file__).parents[2] / "bench" / "extremes" / "lost-samples"
-
-
-def lost_samples_module():
-    """The program, which has no ending, as a module."""
-    loader = importlib.machinery.SourceFileLoader("lost_samples", str(LOST_SAMPLES))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("lost_samples", loader))
-    loader.exec_module(module)
-    return module
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+from program_module import program_module  # noqa: E402
 
 
 class LostSamples(unittest.TestCase):
     def test_only_whole_renders_of_this_size_are_taken_from_the_folder(self):
-        module = lost_samples_module()
+        module = program_module("bench/extremes/lost-samples")
         stats = {"width": 128, "height": 124, "iterations": 1024}
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "veach-door-pt.json"

@@ -1,7 +1,5 @@
 """bench/recommend/judge reads the committed campaigns."""
 
-import importlib.machinery
-import importlib.util
 import pathlib
 import subprocess
 import sys
@@ -11,17 +9,12 @@ ROOT = pathlib.Path(__file__).parents[3]
 JUDGE = ROOT / "bench" / "recommend" / "judge"
 CAMPAIGNS = [ROOT / "bench" / "campaign" / name for name in ("standard", "study")]
 
-
-def judge_module():
-    """The judge, a program without an ending, as a module."""
-    loader = importlib.machinery.SourceFileLoader("judge", str(JUDGE))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("judge", loader))
-    loader.exec_module(module)
-    return module
+sys.path.insert(0, str(ROOT / "tests"))
+from program_module import program_module  # noqa: E402
 
 
 class Campaigns(unittest.TestCase):
-    judge = judge_module()
+    judge = program_module("bench/recommend/judge")
 
     def test_each_has_a_perfect_image_of_nine_scenes(self):
         for campaign in CAMPAIGNS:
