@@ -95,16 +95,15 @@ MeshFaces pairFaces(const Mesh& mesh, const Double3& origin) {
 }  // namespace
 
 MeshFaces facesOf(const Mesh& mesh, bool usesUv, const Double3& origin, const ParallelFor& parallelFor) {
-  MeshFaces faces;
-  const bool hasOwnUv = usesUv && mesh.uvs.empty();
-  if (mesh.triangles.size() <= kMergeLimit && !hasOwnUv) {
-    faces = pairFaces(mesh, origin);
-    faces.canTurn = true;
+  // Without texture coordinates each triangle has its own (u, v), which depend on the order of its corners.
+  const bool canTurn = !usesUv || !mesh.uvs.empty(), merges = canTurn && mesh.triangles.size() <= kMergeLimit;
+  MeshFaces faces = merges ? pairFaces(mesh, origin) : MeshFaces{};
+  faces.canTurn = canTurn;
+  if (merges) {
     std::erase_if(faces.quads, [&](const FaceCorners& quad) { return !hasArea(mesh, quad); });
     std::erase_if(faces.triangles, [&](uint32_t i) { return !hasArea(mesh, mesh.triangles[i]); });
     return faces;
   }
-  faces.canTurn = !hasOwnUv;
   // A large mesh keeps its own list of triangles, unless one of them has no area.
   faces.allTriangles =
       !anyIndex(parallelFor, mesh.triangles.size(), [&](size_t i) { return !hasArea(mesh, mesh.triangles[i]); });
