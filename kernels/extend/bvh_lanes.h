@@ -57,8 +57,8 @@ WAVECREST_INLINE FaceHit<Number> intersectFaces(Vec3<Number> a, Vec3<Number> b, 
   const Number zero(0.0f);
   const Number least = min(first, min(hit.second, hit.third)), most = max(first, max(hit.second, hit.third));
   inside = (least >= zero) | (most <= zero);
-  // Of the edges at b: the product of two long ones that are almost parallel would round to another plane. A triangle
-  // seen from its edge covers nothing: 0 / 0 is no distance.
+  // From the edges at b: the cross product of two long edges that are almost parallel would round to another plane. A
+  // triangle seen edge-on has no area there: its distance is 0 / 0, a NaN, which every comparison rejects.
   const Vec3<Number> normal = cross(b - a, c - b);
   hit.t = dot(normal, a) / dot(normal, direction);
   return hit;

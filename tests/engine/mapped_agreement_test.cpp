@@ -207,7 +207,7 @@ TEST(MappedAgreement, aMapWithoutNormalsChangesNothing) {
   EXPECT_NEAR(sums[0], sums[1], 1e-3 * sums[1]);
 }
 
-// A wall with bumps in light from one side, of edges of twice the scale.
+// A bumped square wall with sides of 2 `scale`, lit obliquely.
 RgbImage bumpyWall(double scale) {
   Scene scene;
   Material material;

@@ -1,4 +1,4 @@
-// How often two builds are run, by the time that was asked for.
+// How many rounds of paired runs fit into a requested duration.
 #include "bench/against/against.h"
 
 #include <gtest/gtest.h>

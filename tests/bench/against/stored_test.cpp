@@ -13,8 +13,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// A result with one scene of two methods, whose slices take about `seconds` for a million paths. drift: called for each
-// visit, what multiplies its times.
+// A result with two methods in one scene; a slice takes about `seconds` for a million paths. drift: called once for
+// each visit; returns the factor by which all its times are multiplied.
 Json resultOf(double seconds, const std::function<double()>& drift = {}) {
   Json methods = Json::array();
   for (const char* method : {"pt", "vcm"}) {

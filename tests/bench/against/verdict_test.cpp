@@ -91,7 +91,7 @@ TEST(Verdict, aMedianAndRanksThatDisagreeGiveNone) {
   NoisyRuns::Pairs pairs{.ours = std::vector<double>(40, 1.0), .other = std::vector<double>(21, 1.001)};
   pairs.other.resize(40, 0.99);
   EXPECT_EQ(verdictOn(pairs, {.level = 0.05}), SpeedVerdict::noDifference);
-  // The same of independent runs: the median of ours is smaller, but in 279 of 400 pairs ours is larger.
+  // Unpaired: our median is smaller, but of all 400 pairs of one run of ours and one of theirs, ours is larger in 279.
   std::vector<double> ours(11, 1.0), other(11, 1.001);
   ours.resize(20, 2.0);
   other.resize(20, 0.5);
