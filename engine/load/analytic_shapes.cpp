@@ -1,6 +1,5 @@
 // Readers of the shapes that need no file. In object space they are Mitsuba's: the rectangle is [-1, 1]^2 at z = 0
 // facing +z, the disk has radius 1 and faces +z, the cube is [-1, 1]^3, the sphere has radius 1 about the origin.
-#include <algorithm>
 #include <cmath>
 
 #include "engine/load/mesh_build.h"
@@ -71,10 +70,11 @@ Geometry readSphere(LoadContext& context, Parameters& parameters, const Matrix4&
     context.unsupported(parameters.locationOf("to_world"),
                         "sphere scaled differently along its axes; expected a uniform scale (or a mesh)");
   }
-  // In files of 0.5 and 0.6 to_world scales the radius, and not the center.
-  if (parameters.object().legacy && length(x) > 0) center = (1 / length(x)) * center;
-  // A mirroring transform turns a sphere inside out, in Mitsuba as here.
-  const bool mirrored = determinant3(toWorld) < 0;
+  // In files of 0.4 to 0.6 to_world scales the radius, and not the center.
+  const bool legacy = parameters.object().legacy;
+  if (legacy && length(x) > 0) center = (1 / length(x)) * center;
+  // A mirroring transform turns a sphere inside out, in Mitsuba 3 as here; in 0.6 normals point away from the center.
+  const bool mirrored = !legacy && determinant3(toWorld) < 0;
   return Sphere{.center = transformPoint(toWorld, center),
                 .radius = radius * length(x),
                 .flipNormals = mirrored != parameters.boolean("flip_normals", false),

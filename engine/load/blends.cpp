@@ -17,8 +17,6 @@ void refuse(LoadContext& context, const XmlElement& part, const std::string& wha
   context.unsupported(part.location(), what);
 }
 
-bool hasMap(const Material& material) { return material.bumpTexture != kNone || material.normalTexture != kNone; }
-
 // The index of the material of a part that is no blend. With --lenient an inner blend is replaced by its first part,
 // and a bump or normal map is removed.
 uint32_t singlePartOf(LoadContext& context, const XmlElement& element) {
@@ -29,7 +27,7 @@ uint32_t singlePartOf(LoadContext& context, const XmlElement& element) {
            "no blend here");
     return inner->materials.front();
   }
-  if (!hasMap(context.scene.materials[index])) return index;
+  if (!context.scene.materials[index].hasMap()) return index;
   refuse(context, element, "a bump or normal map within a blend is not supported; expected it around the blend");
   // Remove the map from a copy, as the material may also be used outside of a blend.
   Material plain = context.scene.materials[index];

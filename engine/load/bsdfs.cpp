@@ -76,7 +76,7 @@ Rgb readIndexColor(LoadContext& context, Parameters& parameters, std::string_vie
   return readColor(context, *element, ColorRole::refraction);
 }
 
-// The parameters that `conductor` and `roughconductor` share. In files of 0.5 and 0.6 the material is copper by
+// The parameters that `conductor` and `roughconductor` share. In files of 0.4 to 0.6 the material is copper by
 // default, eta and k stand in for its own one by one, and both are those of the metal in a vacuum, with air outside.
 Conductor readAnyConductor(LoadContext& context, Parameters& parameters) {
   Conductor conductor;
@@ -332,6 +332,10 @@ void readNull(LoadContext&, Parameters&, Material& material) {
 
 void readMask(LoadContext& context, Parameters& parameters, Material& material) {
   const TexturedFloat opacity = readTexturedFloat(context, parameters, "opacity", 0.5);
+  if (parameters.object().legacy && isColored(context, parameters, "opacity")) {
+    context.note(parameters.locationOf("opacity"), "coloured opacity of a mask",
+                 "one number for all channels, where Mitsuba 0.6 has one for each");
+  }
   readBsdf(context, parameters.onlyObject("bsdf"), material);
   // Opacities of nested masks multiply. This works only for numbers, as a material has one texture for its opacity.
   if (!material.opacity) {
@@ -343,11 +347,13 @@ void readMask(LoadContext& context, Parameters& parameters, Material& material) 
   }
 }
 
-// Reads the parameters that `bumpmap` and `normalmap` share. The nested BSDF must be in `material` already.
+// Reads the parameters that `bumpmap` and `normalmap` share. The nested BSDF must be in `material` already. In files of
+// 0.4 to 0.6, which know neither of the two, mapped normals stay as they are and darken nothing.
 void readNormalMapping(Parameters& parameters, Material& material) {
-  if (material.bumpTexture != kNone || material.normalTexture != kNone) failTwice(parameters);
-  material.normalMapping = {.flipInvalidNormals = parameters.boolean("flip_invalid_normals", true),
-                            .shadowing = parameters.boolean("use_shadowing_function", true),
+  if (material.hasMap()) failTwice(parameters);
+  const bool byDefault = !parameters.object().legacy;
+  material.normalMapping = {.flipInvalidNormals = parameters.boolean("flip_invalid_normals", byDefault),
+                            .shadowing = parameters.boolean("use_shadowing_function", byDefault),
                             .aroundTwoSided = material.twoSided};
 }
 
@@ -359,7 +365,8 @@ bool isFlat(const Texture& texture) {
 
 void readBumpMap(LoadContext& context, Parameters& parameters, Material& material) {
   // Heights are numbers, so a coloured bitmap is replaced by its luminance.
-  const uint32_t texture = scalarTextureOf(context, textureOf(context, parameters.onlyObject("texture")));
+  const uint32_t heights = textureOf(context, parameters.onlyObject("texture"));
+  const uint32_t texture = scalarTextureOf(context, heights, !parameters.object().legacy);
   if (isFlat(context.scene.textures[texture])) {
     context.note(parameters.location(), "bumpmap of a checkerboard, or of a bitmap with filter_type nearest",
                  "no bumps: heights have steps and no slopes");
@@ -373,7 +380,8 @@ void readBumpMap(LoadContext& context, Parameters& parameters, Material& materia
 
 void readNormalMap(LoadContext& context, Parameters& parameters, Material& material) {
   const uint32_t texture = textureOf(context, parameters.onlyObject("texture"));
-  if (!parameters.has("normalmap")) {
+  // In Mitsuba 0.6 the name of the texture is free.
+  if (!parameters.has("normalmap") && !parameters.object().legacy) {
     throw LoadError(parameters.location(), "normalmap has no texture; expected one with name=\"normalmap\"");
   }
   readBsdf(context, parameters.onlyObject("bsdf"), material);

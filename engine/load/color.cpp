@@ -27,7 +27,7 @@ Rgb xyzToRgb(const Rgb& xyz) {
 Rgb grey(double value) { return {value, value, value}; }
 Rgb scaled(double factor, const Rgb& color) { return {factor * color[0], factor * color[1], factor * color[2]}; }
 
-// A spectrum of one value everywhere. As emission it has the colour of illuminant E, but in files of 0.5 and 0.6 it is
+// A spectrum of one value everywhere. As emission it has the colour of illuminant E, but in files of 0.4 to 0.6 it is
 // R = G = B.
 Rgb uniformSpectrum(double value, ColorRole role, bool legacy) {
   return role == ColorRole::emission && !legacy ? scaled(value, xyzToRgb({1, 1, 1})) : grey(value);
@@ -69,7 +69,7 @@ Rgb readSrgb(std::string_view text, const SourceLocation& where) {
   return linear;
 }
 
-// Linear numbers, or "#rrggbb", which is gamma-encoded but in files of 0.5 and 0.6.
+// Linear numbers, or "#rrggbb", which is gamma-encoded but in files of 0.4 to 0.6.
 Rgb readRgb(std::string_view text, const SourceLocation& where, bool legacy) {
   if (!isHexCode(text)) return readRgbNumbers(text, where);
   return legacy ? readHexCode(text, where) : readSrgb(text, where);
@@ -80,7 +80,7 @@ struct Spectrum {
   std::vector<double> wavelengths, values;
 
   // Interpolation needs at least two wavelengths in increasing order.
-  Rgb toRgb(const SourceLocation& where, ColorRole role) const {
+  Rgb toRgb(const SourceLocation& where, ColorRole role, bool legacy) const {
     for (size_t i = 1; i < wavelengths.size(); ++i) {
       if (wavelengths[i] > wavelengths[i - 1]) continue;
       throw LoadError(where, "wavelengths of a spectrum do not increase at " + std::to_string(wavelengths[i]) +
@@ -89,7 +89,7 @@ struct Spectrum {
     if (wavelengths.size() < 2) {
       throw LoadError(where, "spectrum has too few entries; expected one value, or two wavelengths and their values");
     }
-    return spectrumToRgb(wavelengths, values, role);
+    return spectrumToRgb(wavelengths, values, role, legacy);
   }
 };
 
@@ -111,7 +111,7 @@ Rgb readSpectrum(std::string_view text, const XmlElement& element, ColorRole rol
     spectrum.wavelengths.push_back(parseReal(token.substr(0, colon), where));
     spectrum.values.push_back(parseReal(token.substr(colon + 1), where));
   }
-  return spectrum.toRgb(where, role);
+  return spectrum.toRgb(where, role, element.legacy);
 }
 
 // A file with a wavelength and its value on each line; # begins a comment.
@@ -131,11 +131,12 @@ Rgb readSpectrumFile(LoadContext& context, const XmlElement& element, ColorRole 
     spectrum.wavelengths.push_back(numbers[0]);
     spectrum.values.push_back(numbers[1]);
   }
-  return spectrum.toRgb({path.string(), 0}, role);
+  return spectrum.toRgb({path.string(), 0}, role, element.legacy);
 }
 
 // Radiance of a black body (Planck's law) as Mitsuba has it: W / (m^2 sr nm), from `first` to `last` nm.
-Rgb blackbody(double temperature, double first, double last, const SourceLocation& where, ColorRole role) {
+Rgb blackbody(double temperature, double first, double last, const XmlElement& element, ColorRole role) {
+  const SourceLocation where = element.location();
   constexpr double kC = 2.99792458e8, kH = 6.62607004e-34, kBoltzmann = 1.38064852e-23;
   constexpr int kSteps = 1000;
   if (role == ColorRole::reflectance || role == ColorRole::refraction) {
@@ -149,7 +150,7 @@ Rgb blackbody(double temperature, double first, double last, const SourceLocatio
     spectrum.values.push_back(1e-9 * 2 * kH * kC * kC /
                               (std::pow(m, 5) * std::expm1(kH * kC / (m * kBoltzmann * temperature))));
   }
-  return spectrum.toRgb(where, role);
+  return spectrum.toRgb(where, role, element.legacy);
 }
 
 // <blackbody temperature="5000K" scale="…"/> of 0.5 and 0.6.
@@ -159,7 +160,7 @@ Rgb readBlackbody(const XmlElement& element, ColorRole role) {
   if (temperature.ends_with('K') || temperature.ends_with('k')) temperature.remove_suffix(1);
   const std::string* scale = element.find("scale");
   return scaled(scale ? parseReal(*scale, element.location()) : 1,
-                blackbody(parseReal(temperature, element.location()), kCieFirst, kCieLast, element.location(), role));
+                blackbody(parseReal(temperature, element.location()), kCieFirst, kCieLast, element, role));
 }
 
 // <spectrum type="uniform|d65|srgb|regular|irregular|blackbody">
@@ -196,10 +197,10 @@ Rgb readSpectrumObject(LoadContext& context, const XmlElement& object, ColorRole
                                              " wavelengths and " + std::to_string(spectrum.values.size()) +
                                              " values; expected as many of both");
     }
-    color = spectrum.toRgb(object.location(), role);
+    color = spectrum.toRgb(object.location(), role, object.legacy);
   } else if (type == "blackbody") {
     color = blackbody(parameters.requiredReal("temperature"), parameters.real("wavelength_min", kCieFirst),
-                      parameters.real("wavelength_max", kCieLast), object.location(), role);
+                      parameters.real("wavelength_max", kCieLast), object, role);
   } else {
     throw LoadError(object.location(),
                     "spectrum " + inQuotes(type) +
@@ -216,7 +217,7 @@ double srgbToLinear(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-Rgb spectrumToRgb(std::span<const double> wavelengths, std::span<const double> values, ColorRole role) {
+Rgb spectrumToRgb(std::span<const double> wavelengths, std::span<const double> values, ColorRole role, bool legacy) {
   // Mitsuba's quadrature: 1000 samples over the CIE range, both ends included.
   constexpr int kSteps = 1000;
   Rgb xyz{0, 0, 0};
@@ -228,8 +229,8 @@ Rgb spectrumToRgb(std::span<const double> wavelengths, std::span<const double> v
     while (interval + 2 < wavelengths.size() && wavelengths[interval + 1] <= w) ++interval;
     const double t = (w - wavelengths[interval]) / (wavelengths[interval + 1] - wavelengths[interval]);
     double value = (1 - t) * values[interval] + t * values[interval + 1];
-    // Everything but emission is seen under D65.
-    if (role != ColorRole::emission) value *= cieD65(w);
+    // Everything but emission is seen under D65. Mitsuba 0.6 has no illuminant.
+    if (role != ColorRole::emission && !legacy) value *= cieD65(w);
     const std::array<double, 3> observer = cie1931(w);
     for (size_t c = 0; c < 3; ++c) xyz[c] += observer[c] * value;
   }

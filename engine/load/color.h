@@ -3,7 +3,8 @@
 // A value is a <float> (grey), an <rgb>, an <srgb> (hexadecimal or gamma-encoded), a <spectrum> (one number,
 // wavelength:value pairs or a file of them), a <blackbody> of 0.5 and 0.6, or an object <spectrum type=…>. What a
 // spectrum becomes depends on its role: reflectance is seen under D65 and clamped to [0, 1]; radiance is integrated as
-// it is, so that a flat spectrum is slightly pink (in files of 0.5 and 0.6 <spectrum> with one number is grey).
+// it is, so that a flat spectrum is slightly pink. In files of 0.4 to 0.6 all spectra are integrated as they are, and
+// <spectrum> with one number is grey.
 #pragma once
 
 #include <span>
@@ -22,8 +23,8 @@ enum class ColorRole {
 // The colour of a value element or a <spectrum type=…> object; anything else is an error.
 Rgb readColor(LoadContext& context, const XmlElement& element, ColorRole role);
 
-// A piecewise linear spectrum, zero outside its wavelengths (nm, increasing), as RGB.
-Rgb spectrumToRgb(std::span<const double> wavelengths, std::span<const double> values, ColorRole role);
+// A piecewise linear spectrum, zero outside its wavelengths (nm, increasing), as RGB. legacy: of a file of 0.4 to 0.6.
+Rgb spectrumToRgb(std::span<const double> wavelengths, std::span<const double> values, ColorRole role, bool legacy);
 
 double srgbToLinear(double encoded);
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "engine/load/load.h"
 #include "engine/load/xml_document.h"
@@ -21,9 +22,10 @@ struct LoadContext {
   // An object that is referenced many times is read once.
   std::map<const XmlElement*, uint32_t> materials{};
   std::map<const XmlElement*, uint32_t> textures{};
-  std::map<uint32_t, uint32_t> scalarTextures{};  // what stands in for a texture where a number is asked for
-  std::set<const XmlElement*> reading{};          // objects being read, to find reference cycles
-  std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};                  // by path and colour treatment
+  // What stands in for a texture where a number is asked for, by the texture and by whether colours are exchanged.
+  std::map<std::pair<uint32_t, bool>, uint32_t> scalarTextures{};
+  std::set<const XmlElement*> reading{};                           // objects being read, to find reference cycles
+  std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};  // by path and colour treatment
   std::map<std::string, std::shared_ptr<const std::vector<char>>> meshArchives{};  // files of many meshes, by path
   std::shared_ptr<MeshesAhead> meshesAhead{};
   std::set<const XmlElement*> areaLights{};         // that shapes have

@@ -6,8 +6,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/load/load.h"

@@ -12,7 +12,6 @@
 #include "engine/load/sensor.h"
 #include "engine/load/shapes.h"
 #include "engine/load/simplify.h"
-#include "engine/load/values.h"
 #include "engine/load/xml_document.h"
 
 namespace wavecrest {

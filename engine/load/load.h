@@ -1,4 +1,4 @@
-// Reads a scene file: Mitsuba 3 XML, and by automatic upgrade the names of versions 0.5 to 2.x, into a Scene.
+// Reads a scene file: Mitsuba 3 XML, and by automatic upgrade the names of versions 0.4 to 2.x, into a Scene.
 //
 // In: a path to an XML file; the meshes and textures it names are found relative to the file that names them.
 // Out: a complete, checked Scene: every index valid, every number finite, every light of positive area.

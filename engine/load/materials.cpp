@@ -158,11 +158,10 @@ namespace {
 // The luminance of linear Rec. 709, with Mitsuba's weights.
 double luminance(double r, double g, double b) { return 0.212671 * r + 0.715160 * g + 0.072169 * b; }
 
+bool isGrey(const Rgb& color) { return color[0] == color[1] && color[1] == color[2]; }
+
 // The mean of the channels. A grey value is taken as it is, since the sum would round it.
-double meanOf(const Rgb& color) {
-  const bool grey = color[0] == color[1] && color[1] == color[2];
-  return grey ? color[0] : (color[0] + color[1] + color[2]) / 3;
-}
+double meanOf(const Rgb& color) { return isGrey(color) ? color[0] : (color[0] + color[1] + color[2]) / 3; }
 
 // A bitmap of three channels as one of one channel.
 Bitmap luminanceOf(const Bitmap& colour) {
@@ -176,11 +175,11 @@ Bitmap luminanceOf(const Bitmap& colour) {
 
 }  // namespace
 
-// Where a number is asked for, Mitsuba reads a colour bitmap's luminance and a colour's mean, and swaps the colours of
-// a checkerboard (3.9, seen in its images).
-Texture scalarTexture(Texture texture) {
+// Where a number is asked for, Mitsuba reads a colour bitmap's luminance and a colour's mean. Mitsuba 3 also swaps the
+// colours of a checkerboard (3.9, seen in its images).
+Texture scalarTexture(Texture texture, bool swaps) {
   if (auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
-    std::swap(board->color0, board->color1);
+    if (swaps) std::swap(board->color0, board->color1);
     for (Rgb* color : {&board->color0, &board->color1}) color->fill(meanOf(*color));
   } else {
     auto& bitmap = std::get<BitmapTexture>(texture.kind).bitmap;
@@ -189,8 +188,9 @@ Texture scalarTexture(Texture texture) {
   return texture;
 }
 
-uint32_t scalarTextureOf(LoadContext& context, uint32_t index) {
-  if (const auto known = context.scalarTextures.find(index); known != context.scalarTextures.end()) {
+uint32_t scalarTextureOf(LoadContext& context, uint32_t index, bool swaps) {
+  const std::pair<uint32_t, bool> key{index, swaps};
+  if (const auto known = context.scalarTextures.find(key); known != context.scalarTextures.end()) {
     return known->second;
   }
   const Texture& texture = context.scene.textures[index];
@@ -199,15 +199,30 @@ uint32_t scalarTextureOf(LoadContext& context, uint32_t index) {
   if (bitmap != nullptr && bitmap->bitmap->channels == 1) return index;
   // Any other texture gets a scalar version in the scene, once.
   const uint32_t scalar = static_cast<uint32_t>(context.scene.textures.size());
-  context.scene.textures.push_back(scalarTexture(texture));
-  context.scalarTextures.emplace(index, scalar);
+  context.scene.textures.push_back(scalarTexture(texture, swaps));
+  context.scalarTextures.emplace(key, scalar);
   return scalar;
 }
 
 TexturedFloat readTexturedFloat(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
   TexturedRgb color = readTextured(context, parameters, name, fallback, ColorRole::unbounded);
-  if (color.texture != kNone) color.texture = scalarTextureOf(context, color.texture);
+  if (color.texture != kNone) color.texture = scalarTextureOf(context, color.texture, !parameters.object().legacy);
   return {.value = meanOf(color.value), .texture = color.texture};
+}
+
+bool isColored(LoadContext& context, Parameters& parameters, std::string_view name) {
+  const TexturedRgb color = readTextured(context, parameters, name, 0, ColorRole::unbounded);
+  if (color.texture == kNone) return !isGrey(color.value);
+  const Texture& texture = context.scene.textures[color.texture];
+  if (const auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
+    return !isGrey(board->color0) || !isGrey(board->color1);
+  }
+  const Bitmap& bitmap = *std::get<BitmapTexture>(texture.kind).bitmap;
+  const std::vector<float>& pixels = bitmap.pixels;
+  for (size_t i = 0; bitmap.channels == 3 && i + 2 < pixels.size(); i += 3) {
+    if (!isGrey({pixels[i], pixels[i + 1], pixels[i + 2]})) return true;
+  }
+  return false;
 }
 
 Rgb readConstantEmission(LoadContext& context, Parameters& parameters, std::string_view name) {

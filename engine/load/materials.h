@@ -19,11 +19,14 @@ uint32_t emissionTextureOf(LoadContext& context, const XmlElement& texture, cons
 // A parameter that is a colour or a texture; TexturedRgb::texture says which.
 TexturedRgb readTexturedRgb(LoadContext& context, Parameters& parameters, std::string_view name, double fallback);
 TexturedRgb readTexturedEmission(LoadContext& context, Parameters& parameters, std::string_view name);
-// The texture that stands in for another where a number is asked for instead of a colour.
-uint32_t scalarTextureOf(LoadContext& context, uint32_t index);
-Texture scalarTexture(Texture texture);
+// The texture that stands in for another where a number is asked for instead of a colour. swaps: a checkerboard's
+// colours are exchanged, as Mitsuba 3 does and 0.6 does not.
+uint32_t scalarTextureOf(LoadContext& context, uint32_t index, bool swaps);
+Texture scalarTexture(Texture texture, bool swaps);
 
 TexturedFloat readTexturedFloat(LoadContext& context, Parameters& parameters, std::string_view name, double fallback);
+// Whether the colour or the texture that a number is read from is anywhere not grey.
+bool isColored(LoadContext& context, Parameters& parameters, std::string_view name);
 // A parameter that must be one colour everywhere.
 Rgb readConstantEmission(LoadContext& context, Parameters& parameters, std::string_view name);
 

@@ -17,7 +17,7 @@ TriangleSoup readObj(const std::filesystem::path& path, bool flipTexCoords, cons
 // Mesh `index` of a serialized file in memory, whose name errors give.
 struct SerializedMesh {
   TriangleSoup soup;
-  bool faceNormals = false;  // the file asks for facets, to which Mitsuba 3 does not listen
+  bool faceNormals = false;  // the file asks for facets, to which Mitsuba does not listen
 };
 SerializedMesh readSerialized(std::span<const char> file, const std::string& name, uint32_t index);
 

@@ -1,7 +1,9 @@
 // Readers of the shapes `ply`, `obj` and `serialized`.
 #include "engine/load/mesh_shapes.h"
 
+#include <array>
 #include <optional>
+#include <utility>
 
 #include "engine/load/input_file.h"
 #include "engine/load/meshes_ahead.h"
@@ -95,7 +97,7 @@ Geometry readObjShape(LoadContext& context, Parameters& parameters, const Matrix
 }
 
 Geometry readSerializedShape(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
-  MeshPlacement placement = readPlacement(parameters, toWorld);
+  const MeshPlacement placement = readPlacement(parameters, toWorld);
   const MeshFile file = meshFileOf(context, parameters);
   context.listFile(file.path);
   // Take the mesh that was read ahead, or read it from the archive.
@@ -107,14 +109,14 @@ Geometry readSerializedShape(LoadContext& context, Parameters& parameters, const
     if (!archive) archive = std::make_shared<const std::vector<char>>(readInputFile(path, file.where));
     mesh = readSerialized(*archive, path, file.index);
   }
-  // Files of 0.5 and 0.6 can ask for facets too. Mitsuba 3 does not look at what the mesh asks for.
+  // Mitsuba does not look at what the mesh asks for: 0.6 overwrites the flag with the shape's parameter.
   if (mesh->faceNormals && !placement.faceNormals) {
-    if (parameters.object().legacy) {
-      placement.faceNormals = true;
-    } else {
-      context.note(file.where, "face normals that a serialized mesh asks for",
-                   "left out, as in Mitsuba 3: face_normals of the shape decides");
-    }
+    context.note(file.where, "face normals that a serialized mesh asks for",
+                 "left out, as in Mitsuba: face_normals of the shape decides");
+  }
+  // Mitsuba 0.6 turns the triangles of a mirrored mesh around, of serialized meshes only.
+  if (parameters.object().legacy && determinant3(toWorld) < 0) {
+    for (std::array<uint32_t, 3>& t : mesh->soup.triangles) std::swap(t[0], t[1]);
   }
   // readSerialized leaves the texture coordinates as they are.
   if (file.flipTexCoords) {

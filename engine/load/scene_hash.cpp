@@ -1,8 +1,6 @@
 #include "engine/load/scene_hash.h"
 
 #include <bit>
-#include <cstring>
-#include <span>
 
 namespace wavecrest {
 
@@ -99,7 +97,7 @@ class Hasher {
   // How a map is applied has no effect without a map.
   void add(const Material& m) {
     all(m.kind, m.twoSided, m.opacity, m.bumpTexture, m.bumpScale, m.normalTexture);
-    if (m.bumpTexture != kNone || m.normalTexture != kNone) add(m.normalMapping);
+    if (m.hasMap()) add(m.normalMapping);
   }
 
   // Shapes. hashScene adds the groups.

@@ -1,7 +1,6 @@
 #include "engine/load/simplify.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "engine/scene/vector_math.h"
@@ -148,9 +147,8 @@ void unwrapBlend(Material& material, const Scene& scene) {
     return;
   }
   const Material& part = scene.materials[blend->materials[0]];
-  const bool mapped = material.bumpTexture != kNone || material.normalTexture != kNone;
   if (part.opacity && material.opacity) return;
-  if (mapped && (part.opacity || part.twoSided)) return;
+  if (material.hasMap() && (part.opacity || part.twoSided)) return;
   material.twoSided = material.twoSided || part.twoSided;
   if (part.opacity) material.opacity = part.opacity;
   const auto kind = part.kind;

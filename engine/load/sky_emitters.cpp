@@ -7,7 +7,6 @@
 
 #include "engine/load/color.h"
 #include "engine/load/emitters.h"
-#include "engine/load/materials.h"
 #include "engine/load/sun_position.h"
 #include "engine/load/values.h"
 #include "engine/scene/vector_math.h"
@@ -17,6 +16,9 @@ namespace wavecrest {
 namespace {
 
 constexpr double kSunAperture = 0.5358;  // degrees, Mitsuba's
+// Directions in float are too coarse for a much smaller sun: many of those sampled in its disc would round to outside
+// of it. A sun of this size already looks like a point. Its irradiance does not depend on its size.
+constexpr double kSmallestAperture = 0.02;
 
 int readWhole(Parameters& parameters, std::string_view name, int fallback, int lowest, int highest) {
   return static_cast<int>(parameters.integer(name, fallback, lowest, highest));
@@ -102,14 +104,17 @@ EmitterKind readSunsky(LoadContext& context, Parameters& parameters) {
   if (sky.sunAperture >= 180) {
     throw LoadError(parameters.locationOf("sun_aperture"), "sun_aperture is not below 180; expected degrees");
   }
+  if (sky.sunAperture < kSmallestAperture) {
+    context.note(parameters.locationOf("sun_aperture"), "sun_aperture below 0.02 degrees", "0.02 is used");
+    sky.sunAperture = kSmallestAperture;
+  }
   if (parameters.boolean("complex_sun", false)) {
     context.note(parameters.locationOf("complex_sun"), "complex_sun", "the sun's disc is evenly bright");
   }
   // Versions 0.5 and 0.6 give the radius of the sun as a factor, and their zenith is along y.
   if (legacy) {
-    // The aperture must be above 0. A sun of this size already looks like a point.
-    constexpr double kSmallest = 0.02;
-    sky.sunAperture = std::clamp(kSunAperture * readScale(parameters, "sun_radius_scale", 1), kSmallest, 90.0);
+    const double scaled = kSunAperture * readScale(parameters, "sun_radius_scale", 1);
+    sky.sunAperture = std::clamp(scaled, kSmallestAperture, 90.0);
     for (size_t i = 0; i < 3; ++i) {  // z up instead of y
       const auto row = toWorld[i];
       sky.toWorld[i] = {row[0], -row[2], row[1], row[3]};

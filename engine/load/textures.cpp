@@ -43,8 +43,9 @@ Filter readFilter(LoadContext& context, Parameters& parameters) {
 }
 
 // The wrap mode in the given parameter. Borders of 0 or 1 are read as clamp, with a note.
-Wrap readWrap(LoadContext& context, Parameters& parameters, std::string_view parameter) {
-  const std::string name = toLower(parameters.string(parameter, "repeat"));
+Wrap readWrap(LoadContext& context, Parameters& parameters, std::string_view parameter, Wrap fallback) {
+  if (!parameters.has(parameter)) return fallback;
+  const std::string name = toLower(parameters.string(parameter, ""));
   if (name == "repeat") return Wrap::repeat;
   if (name == "mirror") return Wrap::mirror;
   if (name == "clamp") return Wrap::clamp;
@@ -56,12 +57,11 @@ Wrap readWrap(LoadContext& context, Parameters& parameters, std::string_view par
                   "unknown " + std::string(parameter) + " " + inQuotes(name) + "; expected repeat, mirror or clamp");
 }
 
-// `wrap_mode`, or both modes of version 0.6, which has one for each axis.
+// `wrap_mode`, which version 0.6 overrides for each axis.
 Wrap readWrapOfAxes(LoadContext& context, Parameters& parameters) {
-  if (!parameters.has("wrap_mode_u") && !parameters.has("wrap_mode_v")) {
-    return readWrap(context, parameters, "wrap_mode");
-  }
-  const Wrap u = readWrap(context, parameters, "wrap_mode_u"), v = readWrap(context, parameters, "wrap_mode_v");
+  const Wrap both = readWrap(context, parameters, "wrap_mode", Wrap::repeat);
+  const Wrap u = readWrap(context, parameters, "wrap_mode_u", both);
+  const Wrap v = readWrap(context, parameters, "wrap_mode_v", both);
   if (u != v) {
     context.unsupported(parameters.locationOf(parameters.has("wrap_mode_v") ? "wrap_mode_v" : "wrap_mode_u"),
                         "wrap_mode_u and wrap_mode_v differ; expected the same for both");
@@ -111,6 +111,13 @@ Rgb readRawValue(LoadContext& context, Parameters& parameters) {
   return readColor(context, *element, ColorRole::unbounded);
 }
 
+// A bitmap of one pixel.
+Texture constantTexture(const Rgb& value) {
+  auto bitmap = std::make_shared<Bitmap>(Bitmap{.width = 1, .height = 1, .channels = 3, .pixels = {}});
+  for (const double channel : value) bitmap->pixels.push_back(static_cast<float>(channel));
+  return {.kind = BitmapTexture{.bitmap = std::move(bitmap), .filter = Filter::nearest}, .toUv = identityMatrix()};
+}
+
 }  // namespace
 
 Texture readBitmapTexture(LoadContext& context, Parameters& parameters) {
@@ -127,20 +134,19 @@ Texture readBitmapTexture(LoadContext& context, Parameters& parameters) {
 }
 
 Texture readRawConstant(LoadContext& context, Parameters& parameters) {
-  const Rgb value = readRawValue(context, parameters);
-  // A constant is a bitmap of one pixel.
-  auto bitmap = std::make_shared<Bitmap>(Bitmap{.width = 1, .height = 1, .channels = 3, .pixels = {}});
-  for (const double channel : value) bitmap->pixels.push_back(static_cast<float>(channel));
-  return {.kind = BitmapTexture{.bitmap = std::move(bitmap), .filter = Filter::nearest}, .toUv = identityMatrix()};
+  return constantTexture(readRawValue(context, parameters));
 }
 
 Texture readScaleTexture(LoadContext& context, Parameters& parameters) {
-  // The factor is a number or a colour, in one of two parameters.
-  const std::string_view name = parameters.has("value") ? "value" : "scale";
-  const XmlElement* factor = parameters.element(name);
+  // The factor is a number or a colour.
+  const XmlElement* factor = parameters.element("scale");
   const Rgb scale = factor ? readColor(context, *factor, ColorRole::unbounded) : Rgb{1, 1, 1};
-  // The nested texture is a part of this one: it leaves nothing of its own in the scene.
-  Texture texture = readTexture(context, parameters.onlyObject("texture"));
+  // What it scales is the colour `value`, or a nested texture of any name. The nested texture is a part of this one: it
+  // leaves nothing of its own in the scene.
+  const XmlElement* value = parameters.element("value");
+  Texture texture = value != nullptr && value->tag != "texture"
+                        ? constantTexture(readColor(context, *value, ColorRole::unbounded))
+                        : readTexture(context, parameters.onlyObject("texture"));
   if (auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
     for (size_t i = 0; i < 3; ++i) {
       board->color0[i] *= scale[i];
@@ -155,8 +161,8 @@ Texture readScaleTexture(LoadContext& context, Parameters& parameters) {
   scaled.pixels.reserve(size_t{scaled.width} * scaled.height * scaled.channels);
   for (size_t i = 0; i < size_t{scaled.width} * scaled.height; ++i) {
     for (size_t c = 0; c < scaled.channels; ++c) {
-      const float value = bitmap->pixels[bitmap->channels == 1 ? i : 3 * i + c];
-      scaled.pixels.push_back(static_cast<float>(scale[c] * value));
+      const float texel = bitmap->pixels[bitmap->channels == 1 ? i : 3 * i + c];
+      scaled.pixels.push_back(static_cast<float>(scale[c] * texel));
     }
   }
   bitmap = std::make_shared<Bitmap>(std::move(scaled));

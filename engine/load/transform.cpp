@@ -67,19 +67,19 @@ Matrix4 readLookAt(const XmlElement& element) {
     throw LoadError(where, "<" + element.tag + "> is incomplete; expected the attributes origin and target");
   }
   const Double3 from = parseTriple(*origin, where), to = parseTriple(*target, where);
+  const Double3 d = normalized(to - from);
   Double3 upward = up ? parseTriple(*up, where) : Double3{0, 0, 0};
   if (upward == Double3{0, 0, 0}) {
     // Any direction across the view axis: the one Duff et al. (2017, "Building an Orthonormal Basis, Revisited") give.
-    const Double3 d = normalized(to - from);
     const double sign = std::copysign(1.0, d[2]), a = -1 / (sign + d[2]), b = d[0] * d[1] * a;
     upward = {1 + sign * d[0] * d[0] * a, sign * b, -sign * d[0]};
   }
-  // The entries are not finite if `target` equals `origin`, or if `up` is along the view.
-  const Matrix4 m = lookAt(from, to, upward);
-  if (!isFinite(m)) {
+  // A sine this small between `up` and the view is rounding. If `target` equals `origin`, it is not a number.
+  constexpr double kResidue = 1e-10;
+  if (!(length(cross(upward, d)) > kResidue * length(upward))) {
     throw LoadError(where, "degenerate <" + element.tag + ">; expected target unlike origin and up not along the view");
   }
-  return m;
+  return lookAt(from, to, upward);
 }
 
 // 16 numbers, or 9 that are the linear part.

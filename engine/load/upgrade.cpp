@@ -1,17 +1,12 @@
 #include "engine/load/upgrade.h"
 
-#include <array>
+#include <algorithm>
 #include <cctype>
+#include <iterator>
 
 namespace wavecrest {
 
 namespace {
-
-// A tag of an old version, and its name in Mitsuba 3.
-struct Rename {
-  std::string_view from, to;
-};
-constexpr std::array<Rename, 3> kTags = {{{"lookAt", "lookat"}, {"luminaire", "emitter"}, {"camera", "sensor"}}};
 
 bool isLower(char c) { return std::islower(static_cast<unsigned char>(c)) != 0; }
 bool isUpper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
@@ -33,12 +28,15 @@ std::string camelToUnderscore(const std::string& name) {
 }  // namespace
 
 void upgradeElement(XmlElement& element) {
-  for (const Rename& rename : kTags) {
-    if (element.tag == rename.from) element.tag = rename.to;
+  if (element.tag == "lookAt") element.tag = "lookat";
+  // `intent` has an effect in builds of Mitsuba that render spectra only.
+  if (element.tag == "rgb" || element.tag == "spectrum") {
+    std::erase_if(element.attributes, [](const auto& attribute) { return attribute.first == "intent"; });
   }
   for (auto& [name, value] : element.attributes) {
     // The name of a <default> is that of a variable, not that of a parameter.
     if (name == "name" && element.tag != "default") value = camelToUnderscore(value);
+    if (name == "type" && element.tag == "bsdf" && value == "bump") value = "bumpmap";  // of 0.4
   }
 }
 

@@ -5,7 +5,8 @@
 
 namespace wavecrest {
 
-// Tag and attributes: lookAt -> lookat, luminaire -> emitter, camera -> sensor, name="intIOR" -> name="int_ior".
+// Tag and attributes: lookAt -> lookat, name="intIOR" -> name="int_ior", a bsdf's type="bump" -> type="bumpmap", and
+// colours without `intent`.
 void upgradeElement(XmlElement& element);
 
 // What spans several children: uoffset, voffset, uscale, vscale -> one to_uv transform.

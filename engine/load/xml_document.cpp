@@ -63,8 +63,9 @@ class XmlReader {
   };
   XmlElement readElement(const OpenFile& file, const pugi::xml_node& node, int depth);
   void readChildren(const OpenFile& file, const pugi::xml_node& node, int depth, XmlElement& parent);
+  void readPath(const OpenFile& file, const XmlElement& path);
   void readInclude(const OpenFile& file, const XmlElement& include, XmlElement& parent);
-  std::filesystem::path includedPath(const std::filesystem::path& from, std::string_view filename) const;
+  std::filesystem::path findPath(const std::filesystem::path& from, std::string_view name) const;
 
   Variables variables_;
   XmlDocument& document_;
@@ -178,7 +179,7 @@ void XmlReader::readChildren(const OpenFile& file, const pugi::xml_node& node, i
       }
       variables_.setDefault(*name, *value, element.location());
     } else if (element.tag == "path") {
-      document_.searchPaths.push_back(file.path.parent_path() / element.get("value"));
+      readPath(file, element);
     } else if (element.tag == "include") {
       readInclude(file, element, parent);
     } else {
@@ -187,12 +188,29 @@ void XmlReader::readChildren(const OpenFile& file, const pugi::xml_node& node, i
   }
 }
 
-// Beside the file that includes it, or beside the scene, as Mitsuba takes it in nested includes.
-std::filesystem::path XmlReader::includedPath(const std::filesystem::path& from, std::string_view filename) const {
-  const std::filesystem::path beside = (from.parent_path() / filename).lexically_normal();
-  const std::filesystem::path besideScene = (openFiles_.front().parent_path() / filename).lexically_normal();
+// An included file or a folder of <path>, as Mitsuba finds it: beside the file that names it, in a <path>, the last one
+// first, or beside the scene. The first that exists; if none does, the one beside the file that names it.
+std::filesystem::path XmlReader::findPath(const std::filesystem::path& from, std::string_view name) const {
+  std::vector<std::filesystem::path> folders = {from.parent_path()};
+  folders.insert(folders.end(), document_.searchPaths.rbegin(), document_.searchPaths.rend());
+  folders.push_back(openFiles_.front().parent_path());
+  for (const std::filesystem::path& folder : folders) {
+    std::error_code error;
+    if (std::filesystem::exists(folder / name, error)) return (folder / name).lexically_normal();
+  }
+  return (from.parent_path() / name).lexically_normal();
+}
+
+// Adds a folder in which files are looked for.
+void XmlReader::readPath(const OpenFile& file, const XmlElement& path) {
+  const std::string_view value = path.get("value");
+  if (value.empty()) throw LoadError(path.location(), "<path> has no value; expected a folder");
+  const std::filesystem::path folder = findPath(file.path, value);
   std::error_code error;
-  return !std::filesystem::exists(beside, error) && std::filesystem::exists(besideScene, error) ? besideScene : beside;
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw LoadError(path.location(), "folder \"" + folder.string() + "\" not found; expected an existing folder");
+  }
+  document_.searchPaths.push_back(folder);
 }
 
 // The children of an included <scene> take the place of the <include>; any other root element does so itself.
@@ -206,7 +224,7 @@ void XmlReader::readInclude(const OpenFile& file, const XmlElement& include, Xml
                                             "; expected a flatter set of files");
   }
   // Refuse a file that is open already: it would include itself without end.
-  const std::filesystem::path path = includedPath(file.path, filename);
+  const std::filesystem::path path = findPath(file.path, filename);
   for (const std::filesystem::path& open : openFiles_) {
     std::error_code error;
     if (open == path || std::filesystem::equivalent(open, path, error)) {

@@ -23,7 +23,7 @@ struct XmlElement {
   std::vector<XmlElement> children;
   const std::string* file = nullptr;  // owned by XmlDocument::files
   int line = 0;
-  bool legacy = false;  // from a file of version 0.5 or 0.6
+  bool legacy = false;  // from a file of version 0.4 to 0.6
 
   const std::string* find(std::string_view attribute) const;
   // The attribute's value, empty if absent.

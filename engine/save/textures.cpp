@@ -88,8 +88,9 @@ bool mayBeSource(const Texture& texture, const Texture& scalar) {
   return a->bitmap->channels == 3 && a->bitmap->width == b->bitmap->width && a->bitmap->height == b->bitmap->height;
 }
 
-// For each texture of numbers, the colour texture from which the loader derived it, or kNone. The loader puts both into
-// the scene, the derived one behind its source. A file has only the source. Each source has one derived texture.
+// For each texture of numbers, the colour texture from which the loader derives it in a file of version 3, or kNone.
+// The loader puts both into the scene, the derived one behind its source. A file has only the source. Each source has
+// one derived texture.
 std::vector<uint32_t> findScalarSources(const Scene& scene, const std::set<uint32_t>& numbers) {
   std::vector<uint32_t> sources(scene.textures.size(), kNone);
   std::set<uint32_t> taken;
@@ -97,7 +98,7 @@ std::vector<uint32_t> findScalarSources(const Scene& scene, const std::set<uint3
     for (uint32_t i = 0; i < scalar && sources[scalar] == kNone; ++i) {
       const Texture& texture = scene.textures[i];
       if (taken.contains(i) || !mayBeSource(texture, scene.textures[scalar])) continue;
-      if (isSame(scalarTexture(texture), scene.textures[scalar])) sources[scalar] = i;
+      if (isSame(scalarTexture(texture, true), scene.textures[scalar])) sources[scalar] = i;
     }
     taken.insert(sources[scalar]);
   }

@@ -235,9 +235,11 @@ TEST(Bsdf, BumpsOfWhatHasNoSlopesAreNoted) {
 }
 
 TEST(Bsdf, MapsFlipNormalsAndSoftenShadowsUnlessToldOtherwise) {
-  const auto mappingOf = [](const std::string& parameter) {
-    return materialOf(R"(<bsdf type="bumpmap">)" + parameter +
-                      R"(<texture type="checkerboard"/><bsdf type="diffuse"/></bsdf>)")
+  const auto mappingOf = [](const std::string& parameter, std::string_view version = "3.0.0") {
+    const std::string bsdf =
+        R"(<bsdf type="bumpmap">)" + parameter + R"(<texture type="checkerboard"/><bsdf type="diffuse"/></bsdf>)";
+    return load(sceneXml("<shape type=\"sphere\">" + bsdf + "</shape>" + std::string(kSensor), version))
+        .materials.at(0)
         .normalMapping;
   };
   EXPECT_TRUE(mappingOf("").flipInvalidNormals);
@@ -248,6 +250,21 @@ TEST(Bsdf, MapsFlipNormalsAndSoftenShadowsUnlessToldOtherwise) {
   const NormalMapping hard = mappingOf(R"(<boolean name="use_shadowing_function" value="false"/>)");
   EXPECT_TRUE(hard.flipInvalidNormals);
   EXPECT_FALSE(hard.shadowing);
+  // Mitsuba 0.6 evaluates the nested BSDF in the mapped frame, and does nothing else.
+  const NormalMapping old = mappingOf("", "0.6.0");
+  EXPECT_FALSE(old.flipInvalidNormals);
+  EXPECT_FALSE(old.shadowing);
+}
+
+TEST(Bsdf, MapsOfOldFilesHaveTheirOldNames) {
+  const auto materialOfOld = [](const std::string& bsdf, std::string_view version) {
+    return load(sceneXml("<shape type=\"sphere\">" + bsdf + "</shape>" + std::string(kSensor), version))
+        .materials.at(0);
+  };
+  const std::string inner = R"(<texture type="checkerboard"/><bsdf type="diffuse"/></bsdf>)";
+  EXPECT_EQ(materialOfOld(R"(<bsdf type="normalmap">)" + inner, "0.6.0").normalTexture, 0u);
+  EXPECT_NE(materialOfOld(R"(<bsdf type="bump">)" + inner, "0.4.0").bumpTexture, kNone);
+  expectBsdfError(R"(<bsdf type="bump">)" + inner, "bsdf \"bump\" is not supported");
 }
 
 TEST(Bsdf, MapsKnowWhetherTwoSidednessIsAroundThem) {

@@ -115,6 +115,34 @@ TEST(Color, TabulatedSpectrumAsReflectanceIsSeenUnderD65) {
             {0.950523, 0.558094, 0.154806}, kPrinted);
 }
 
+// Mitsuba 0.6 divides the integral of the spectrum and the observer by that of y, without an illuminant (rgb build).
+TEST(Color, TabulatedSpectraOfOldFilesHaveNoIlluminant) {
+  const Scene scene = load(sceneXml(R"(<shape type="sphere"><bsdf type="diffuse">
+      <spectrum name="reflectance" value="400:0.5, 700:0.5"/></bsdf></shape>
+    <shape type="sphere"><bsdf type="conductor"><spectrum name="eta" value="400:2, 700:2"/>
+      <string name="extEta" value="vacuum"/></bsdf></shape>)" +
+                                        std::string(kSensor),
+                                    "0.6.0"));
+  constexpr double kQuadrature = 2e-4;  // relative error of 1000 samples
+  const Rgb flat{0.599872, 0.474748, 0.451799};
+  expectRgb(std::get<Diffuse>(scene.materials.at(0).kind).reflectance.value, flat, kQuadrature);
+  const Rgb eta = std::get<Conductor>(scene.materials.at(1).kind).eta;
+  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(eta[i], 4 * flat[i], 4 * kQuadrature) << "channel " << i;
+}
+
+// Mitsuba 0.6 reads it where it renders spectra.
+TEST(Color, IntentOfOldFilesHasNoEffect) {
+  const std::string body =
+      R"(<emitter type="point"><spectrum name="intensity" intent="reflectance" value="2"/></emitter>
+    <shape type="sphere"><bsdf type="diffuse"><rgb name="reflectance" intent="illuminant" value="0.1, 0.2, 0.3"/></bsdf>
+    </shape>)" +
+      std::string(kSensor);
+  const Scene scene = load(sceneXml(body, "0.6.0"));
+  expectRgb(std::get<PointEmitter>(scene.emitters.at(0).kind).intensity, {2, 2, 2}, 0);
+  expectRgb(std::get<Diffuse>(scene.materials.at(0).kind).reflectance.value, {0.1, 0.2, 0.3}, 0);
+  expectError(sceneXml(body), 2, "unexpected attribute \"intent\"");
+}
+
 TEST(Color, TabulatedSpectrumAsEmissionIsIntegratedAsItIs) {
   expectRgb(intensityOf(R"(<spectrum name="intensity" value="400:0.1, 500:0.3, 600:0.9, 700:0.5"/>)"),
             {1.09588, 0.537125, 0.131576}, kPrinted);

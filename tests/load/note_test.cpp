@@ -1,4 +1,5 @@
 // Notes: what a scene asks for that is approximated or left out is listed, and nothing else is.
+#include "metrics/image/image_io.h"
 #include "tests/load/scene_file.h"
 
 namespace wavecrest {
@@ -64,6 +65,37 @@ TEST(Notes, UnknownParametersOfOldFiles) {
   const std::string body = R"(<shape type="sphere"><float name="wobble" value="1"/></shape>)" + std::string(kSensor);
   expectNote(load(sceneXml(body, "0.6.0")), "parameter \"wobble\" of shape \"sphere\"", "left out");
   expectError(sceneXml(body), 1, "unknown parameter \"wobble\"");
+}
+
+TEST(Notes, ColouredOpacitiesOfOldFiles) {
+  const auto sceneOf = [](const std::string& opacity, std::string_view version) {
+    return load(sceneXml(R"(<shape type="sphere"><bsdf type="mask">)" + opacity +
+                             R"(<bsdf type="diffuse"/></bsdf></shape>)" + std::string(kSensor),
+                         version));
+  };
+  const std::string color = R"(<rgb name="opacity" value="0.3, 0.6, 0"/>)",
+                    grey = R"(<rgb name="opacity" value="0.3"/>)",
+                    board =
+                        R"(<texture type="checkerboard" name="opacity"><rgb name="color1" value="1, 0, 0"/></texture>)";
+  expectNote(sceneOf(color, "0.6.0"), "coloured opacity of a mask", "one number for all channels");
+  expectNote(sceneOf(board, "0.6.0"), "coloured opacity of a mask", "one number for all channels");
+  EXPECT_TRUE(sceneOf(grey, "0.6.0").notes.empty());
+  EXPECT_TRUE(sceneOf("", "0.6.0").notes.empty());
+  EXPECT_TRUE(sceneOf(color, "3.0.0").notes.empty()) << "as in Mitsuba 3";
+}
+
+TEST(Notes, ColouredBitmapsAsOpacitiesOfOldFiles) {
+  const Folder folder;
+  const auto notesOf = [&](const Image8& image) {
+    writePng((folder.path() / "opacity.png").string(), image);
+    return load(folder, sceneXml(R"(<shape type="sphere"><bsdf type="mask"><texture type="bitmap" name="opacity">
+        <string name="filename" value="opacity.png"/></texture><bsdf type="diffuse"/></bsdf></shape>)" +
+                                     std::string(kSensor),
+                                 "0.6.0"))
+        .notes.size();
+  };
+  EXPECT_EQ(notesOf({.width = 2, .height = 1, .pixels = {9, 9, 9, 9, 9, 10}}), 1u);
+  EXPECT_EQ(notesOf({.width = 2, .height = 1, .pixels = {9, 9, 9, 10, 10, 10}}), 0u);
 }
 
 // Mitsuba 3 takes the axis as it is: its matrix is no rotation then.

@@ -1,4 +1,6 @@
 // Textures that no image file belongs to, and what all textures have.
+#include <utility>
+
 #include "tests/load/scene_file.h"
 
 namespace wavecrest {
@@ -49,15 +51,19 @@ TEST(Checkerboard, OfReflectancesAbove1IsAWarning) {
   EXPECT_NE(scene.warnings[0].find("up to 1.4"), std::string::npos) << scene.warnings[0];
 }
 
-// What Mitsuba 3.9 renders, whatever its documentation says.
-TEST(Checkerboard, SwapsItsColoursWhereANumberIsAskedFor) {
-  const Scene scene = loadBody(R"(<texture type="checkerboard" id="t"/><shape type="sphere"><bsdf type="mask">
-    <ref id="t" name="opacity"/><bsdf type="diffuse"><ref id="t" name="reflectance"/></bsdf></bsdf></shape>)");
-  const auto firstColour = [&](uint32_t texture) {
+// What Mitsuba 3.9 renders, whatever its documentation says. Mitsuba 0.6 evaluates a texture for all uses alike.
+TEST(Checkerboard, SwapsItsColoursWhereANumberIsAskedForButInOldFiles) {
+  const std::string body = R"(<texture type="checkerboard" id="t"/><shape type="sphere"><bsdf type="mask">
+    <ref id="t" name="opacity"/><bsdf type="diffuse"><ref id="t" name="reflectance"/></bsdf></bsdf></shape>)";
+  const auto firstColour = [](const Scene& scene, uint32_t texture) {
     return std::get<CheckerboardTexture>(scene.textures.at(texture).kind).color0[0];
   };
-  EXPECT_EQ(firstColour(std::get<Diffuse>(scene.materials.at(0).kind).reflectance.texture), 0.4);
-  EXPECT_EQ(firstColour(scene.materials.at(0).opacity->texture), 0.2);
+  for (const auto& [version, first] : {std::pair{"3.0.0", 0.2}, std::pair{"0.6.0", 0.4}}) {
+    const Scene scene = load(sceneXml(body + std::string(kSensor), version));
+    const Material& material = scene.materials.at(0);
+    EXPECT_EQ(firstColour(scene, std::get<Diffuse>(material.kind).reflectance.texture), 0.4) << version;
+    EXPECT_EQ(firstColour(scene, material.opacity->texture), first) << version;
+  }
 }
 
 TEST(Checkerboard, ColoursAreTheirMeansWhereANumberIsAskedFor) {

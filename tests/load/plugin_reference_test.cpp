@@ -118,6 +118,31 @@ TEST(PluginReference, namesTheSubstanceWithin) {
   }
 }
 
+// What has to be nested in a BSDF.
+std::string nestedIn(const std::string& type) {
+  const std::string diffuse = R"(<bsdf type="diffuse"/>)";
+  if (type == "blendbsdf") return diffuse + diffuse;
+  return type == "mask" || type == "coating" || type == "roughcoating" ? diffuse : "";
+}
+
+TEST(PluginReference, saysOfNoBsdfsParameterThatItMayBeATextureWhereItMayNot) {
+  const auto board = [](const std::string& name) { return R"(<texture type="checkerboard" name=")" + name + "\"/>"; };
+  LoadOptions options;
+  options.lenient = true;  // for those of 0.6 that are replaced
+  for (const auto& [type, entry] : reference().at("plugins").at("bsdf").items()) {
+    for (const auto& [name, parameter] : parametersOf(entry)) {
+      if (!parameter.at("kind").get<std::string>().ends_with(" or texture")) continue;
+      SCOPED_TRACE(type + ": " + name);
+      std::string textures = board(name);
+      if (name == "alpha_u") textures += board("alpha_v");
+      if (name == "alpha_v") textures += board("alpha_u");
+      EXPECT_NO_THROW(loadBody(
+          "<shape type=\"sphere\"><bsdf type=\"" + type + "\">" + textures + nestedIn(type) + "</bsdf></shape>",
+          options));
+    }
+  }
+}
+
 TEST(PluginReference, hasNoParameterThatTheLoaderDoesNotKnow) {
   for (const auto& [object, types] : reference().at("plugins").items()) {
     for (const auto& [type, entry] : types.items()) {

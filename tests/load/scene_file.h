@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>  // mkdtemp  NOLINT(modernize-deprecated-headers)
 
 #include <filesystem>
 #include <fstream>
@@ -11,33 +10,23 @@
 #include <string_view>
 
 #include "engine/load/load.h"
+#include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest {
 
 class Folder {
  public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "wavecrest_load_XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
   std::filesystem::path write(const std::string& name, std::string_view content) const {
-    std::filesystem::path path = path_ / name;
+    std::filesystem::path path = folder_.folder() / name;
     std::filesystem::create_directories(path.parent_path());
     std::filesystem::remove(path);  // file systems may flush to the disk when a file is overwritten
     std::ofstream(path, std::ios::binary) << content;
     return path;
   }
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.folder(); }
 
  private:
-  std::filesystem::path path_;
+  test::TemporaryFolder folder_;
 };
 
 constexpr std::string_view kSensor = "<sensor type=\"perspective\"/>";

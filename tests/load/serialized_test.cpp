@@ -5,15 +5,16 @@
 namespace wavecrest {
 namespace {
 
-std::string serializedShape(std::string_view options = "") {
+std::string serializedShape(std::string_view options = "", std::string_view version = "3.0.0") {
   return sceneXml(R"(<shape type="serialized"><string name="filename" value="mesh.serialized"/>)" +
-                  std::string(options) + "</shape>" + std::string(kSensor));
+                      std::string(options) + "</shape>" + std::string(kSensor),
+                  version);
 }
 std::string shapeIndex(int index) { return R"(<integer name="shape_index" value=")" + std::to_string(index) + "\"/>"; }
-Mesh serializedMesh(const std::string& content, std::string_view options = "") {
+Mesh serializedMesh(const std::string& content, std::string_view options = "", std::string_view version = "3.0.0") {
   const Folder folder;
   folder.write("mesh.serialized", content);
-  return std::get<Mesh>(load(folder, serializedShape(options)).shapes.at(0).kind);
+  return std::get<Mesh>(load(folder, serializedShape(options, version)).shapes.at(0).kind);
 }
 void expectSerializedError(const std::string& content, std::string_view text, std::string_view options = "") {
   const Folder folder;
@@ -43,22 +44,30 @@ TEST(Serialized, NormalsThatAreMissingAreMade) {
   expectSerializedQuad(serializedMesh(serializedQuad({.normals = false})));
 }
 
-TEST(Serialized, FacetsByParameterAndInOldScenesByFlag) {
-  EXPECT_TRUE(serializedMesh(serializedQuad(), R"(<boolean name="face_normals" value="true"/>)").normals.empty());
+// Mitsuba 0.6 reads the flag of the file too, and overwrites it with the parameter.
+TEST(Serialized, FacetsByParameterAndNotByFlag) {
+  const std::string facets = R"(<boolean name="face_normals" value="true"/>)";
   const Folder folder;
   folder.write("mesh.serialized", serializedQuad({.faceNormals = true}));
-  const auto sceneOf = [&](std::string_view version) {
-    return load(folder,
-                sceneXml(R"(<shape type="serialized"><string name="filename" value="mesh.serialized"/></shape>)" +
-                             std::string(kSensor),
-                         version));
+  for (const char* version : {"3.0.0", "0.6.0"}) {
+    EXPECT_TRUE(serializedMesh(serializedQuad(), facets, version).normals.empty()) << version;
+    const Scene scene = load(folder, serializedShape("", version));
+    EXPECT_FALSE(std::get<Mesh>(scene.shapes.at(0).kind).normals.empty()) << version;
+    ASSERT_EQ(scene.notes.size(), 1u) << version;
+    EXPECT_EQ(scene.notes[0].what, "face normals that a serialized mesh asks for");
+  }
+}
+
+// Mitsuba 0.6 turns triangles back that to_world mirrors. Normals of the file decide in every version.
+TEST(Serialized, FacesKeepTheirFrontInAMirrorInOldFiles) {
+  const std::string mirror = R"(<transform name="to_world"><scale x="-1"/></transform>)";
+  const auto normalIn = [&](bool ofFile, std::string_view version) {
+    return serializedMesh(serializedQuad({.normals = ofFile}), mirror, version).normals.at(0)[2];
   };
-  const Scene old = sceneOf("0.6.0"), scene = sceneOf("3.0.0");
-  EXPECT_TRUE(std::get<Mesh>(old.shapes.at(0).kind).normals.empty());
-  EXPECT_TRUE(old.notes.empty());
-  EXPECT_FALSE(std::get<Mesh>(scene.shapes.at(0).kind).normals.empty());
-  ASSERT_EQ(scene.notes.size(), 1u);
-  EXPECT_EQ(scene.notes[0].what, "face normals that a serialized mesh asks for");
+  EXPECT_EQ(normalIn(false, "0.6.0"), 1);
+  EXPECT_EQ(normalIn(false, "3.0.0"), -1);
+  EXPECT_EQ(normalIn(true, "0.6.0"), 1);
+  EXPECT_EQ(normalIn(true, "3.0.0"), 1);
 }
 
 TEST(Serialized, ShapeIndexPicksTheMesh) {

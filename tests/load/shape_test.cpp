@@ -106,6 +106,17 @@ TEST(Sphere, MirroringTransformTurnsItInsideOut) {
   EXPECT_FALSE(shapeOf<Sphere>("sphere", std::string(kMirror) + std::string(kFlip)).flipNormals);
 }
 
+// Normals point away from the center in Mitsuba 0.6, whatever to_world is.
+TEST(Sphere, MirroringTransformLeavesItFacingOutwardInOldFiles) {
+  const auto isFlipped = [](std::string_view content) {
+    const Scene scene =
+        load(sceneXml(R"(<shape type="sphere">)" + std::string(content) + "</shape>" + std::string(kSensor), "0.6.0"));
+    return std::get<Sphere>(scene.shapes.at(0).kind).flipNormals;
+  };
+  EXPECT_FALSE(isFlipped(kMirror));
+  EXPECT_TRUE(isFlipped(std::string(kMirror) + std::string(kFlip)));
+}
+
 TEST(Sphere, NonUniformScaleIsRefused) {
   expectShapeError("sphere", R"(<transform name="to_world"><scale x="2"/></transform>)", "scaled differently");
 }

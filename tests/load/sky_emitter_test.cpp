@@ -108,6 +108,18 @@ TEST(Sunsky, MistakesAreErrors) {
                  "of the environment shears");
 }
 
+TEST(Sunsky, ASunTooSmallForFloatIsWidened) {
+  const auto sunOf = [](const std::string& aperture) {
+    return load(sceneXml("<emitter type=\"sunsky\"><float name=\"sun_aperture\" value=\"" + aperture +
+                         "\"/></emitter>" + std::string(kSensor) + std::string(kSphere)));
+  };
+  const Scene small = sunOf("1e-4"), smallest = sunOf("0.02");
+  EXPECT_EQ(std::get<SunskyEmitter>(small.emitters.at(0).kind).sunAperture, 0.02);
+  ASSERT_EQ(small.notes.size(), 1u);
+  EXPECT_EQ(small.notes[0].what, "sun_aperture below 0.02 degrees");
+  EXPECT_TRUE(smallest.notes.empty());
+}
+
 TEST(Sunsky, NotesWhatItLeavesOut) {
   const Scene scene = load(sceneXml(R"(<emitter type="sunsky"><boolean name="complex_sun" value="true"/>
       <vector name="sun_direction" value="0, 0, -1"/></emitter>)" +

@@ -311,6 +311,16 @@ TEST(Bitmap, OptionsOfVersion06) {
   EXPECT_FLOAT_EQ(texture.bitmap->pixels.at(0), 128 / 255.0f);
 }
 
+TEST(Bitmap, WrapModeIsThatOfAnAxisWithoutItsOwn) {
+  const ImageFolder folder;
+  const std::string clamp = R"(<string name="wrap_mode" value="clamp"/>)";
+  EXPECT_EQ(bitmapOf(folder, "grey.png", clamp + R"(<string name="wrap_mode_u" value="clamp"/>)").wrap, Wrap::clamp);
+  expectTextureError(
+      folder,
+      R"(<string name="filename" value="grey.png"/>)" + clamp + R"(<string name="wrap_mode_u" value="repeat"/>)",
+      "differ");
+}
+
 TEST(Bitmap, TruncatedJpegIsAnError) {
   std::ifstream in(std::string(WAVECREST_TEST_DATA) + "/halves.jpg", std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), {});
@@ -328,6 +338,27 @@ TEST(ScaleTexture, MultipliesTheOneWithin) {
       </texture>)"));
   ASSERT_EQ(scene.textures.size(), 1u);
   EXPECT_FLOAT_EQ(std::get<BitmapTexture>(scene.textures[0].kind).bitmap->pixels[0], 64 / 255.0f);
+}
+
+TEST(ScaleTexture, ScalesWhatIsNamedValue) {
+  const auto textureOf = [](const std::string& value) {
+    return loadBody(texturedSphere(R"(<texture name="reflectance" type="scale"><float name="scale" value="0.5"/>)" +
+                                   value + "</texture>"))
+        .textures.at(0);
+  };
+  const Texture board = textureOf(R"(<texture name="value" type="checkerboard"/>)");
+  EXPECT_EQ(std::get<CheckerboardTexture>(board.kind).color0, (Rgb{0.2, 0.2, 0.2}));
+  const Texture color = textureOf(R"(<rgb name="value" value="0.5, 0.25, 1"/>)");
+  EXPECT_EQ(std::get<BitmapTexture>(color.kind).bitmap->pixels, (std::vector<float>{0.25f, 0.125f, 0.5f}));
+}
+
+TEST(ScaleTexture, NeedsOneThingToScale) {
+  const auto scaled = [](const std::string& content) {
+    return texturedSphere("<texture name=\"reflectance\" type=\"scale\">" + content + "</texture>");
+  };
+  expectErrorOnLine2(scaled(""), "contains 0 objects <texture>");
+  expectErrorOnLine2(scaled(R"(<rgb name="value" value="0.5"/><texture type="checkerboard"/>)"),
+                     "unknown object <texture>");
 }
 
 }  // namespace

@@ -92,6 +92,9 @@ TEST(Transform, BadOperationsAreErrors) {
   expectTransformError(R"(<rotate angle="5"/>)", "no direction");
   expectTransformError(R"(<lookat origin="0,0,0" target="0,0,0" up="0,1,0"/>)", "degenerate <lookat>");
   expectTransformError(R"(<lookat origin="0,0,0" target="0,1,0" up="0,1,0"/>)", "degenerate <lookat>");
+  // Vectors whose cross product is rounding.
+  expectTransformError(R"(<lookat origin="0,0,0" target="1,2,3" up="0.1,0.2,0.3"/>)", "degenerate <lookat>");
+  expectTransformError(R"(<lookat origin="3,4,5" target="0,0,0" up="0.3,0.4,0.5"/>)", "degenerate <lookat>");
   expectTransformError(R"(<lookat origin="0,0" target="0,1,0"/>)", "2 numbers in \"0,0\"; expected 3");
   expectTransformError(R"(<lookat origin="0,0,0"/>)", "incomplete");
   expectTransformError(R"(<matrix value="1 2 3 4"/>)", "4 numbers in <matrix>; expected 16 or 9");

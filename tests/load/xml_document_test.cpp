@@ -100,6 +100,42 @@ TEST(Include, PathIsRelativeToTheIncludingFile) {
             1);
 }
 
+TEST(Include, IsFoundBesideItsFileThenInTheLastPathThenBesideTheScene) {
+  const Folder folder;
+  const auto sphereOf = [](const char* radius) {
+    return sceneXml(R"(<shape type="sphere"><float name="radius" value=")" + std::string(radius) + "\"/></shape>");
+  };
+  folder.write("a/part.xml", sphereOf("2"));
+  folder.write("b/part.xml", sphereOf("3"));
+  folder.write("sub/nested.xml", sceneXml(R"(<include filename="part.xml"/>)"));
+  const auto radiusWith = [&](const std::string& paths, const std::string& file) {
+    return onlySphere(load(folder, sceneXml(std::string(kSensor) + paths + R"(<include filename=")" + file + "\"/>")))
+        .radius;
+  };
+  const std::string both = R"(<path value="a"/><path value="b"/>)";
+  EXPECT_EQ(radiusWith(R"(<path value="a"/>)", "part.xml"), 2);
+  EXPECT_EQ(radiusWith(both, "part.xml"), 3);
+  folder.write("part.xml", sphereOf("4"));
+  EXPECT_EQ(radiusWith("", "sub/nested.xml"), 4) << "beside the scene";
+  EXPECT_EQ(radiusWith(both, "sub/nested.xml"), 3) << "a path is before the scene's folder";
+  folder.write("sub/part.xml", sphereOf("5"));
+  EXPECT_EQ(radiusWith(both, "sub/nested.xml"), 5);
+}
+
+TEST(Include, PathMustBeAFolder) {
+  expectErrorOnLine2("<path/>", "<path> has no value");
+  expectErrorOnLine2(R"(<path value=""/>)", "<path> has no value");
+  expectErrorOnLine2(R"(<path value="typo"/>)", "typo\" not found; expected an existing folder");
+}
+
+TEST(Include, PathOfAnIncludedFileMayBeBesideTheScene) {
+  const Folder folder;
+  folder.write("a/part.xml", sceneXml(kSphere));
+  folder.write("sub/nested.xml", sceneXml(R"(<path value="a"/><include filename="part.xml"/>)"));
+  EXPECT_EQ(onlySphere(load(folder, sceneXml(std::string(kSensor) + R"(<include filename="sub/nested.xml"/>)"))).radius,
+            1);
+}
+
 TEST(Include, ErrorsNameTheIncludedFile) {
   const Folder folder;
   folder.write("part.xml", sceneXml("\n\n<shape type=\"sphere\"><float name=\"radius\" value=\"x\"/></shape>"));

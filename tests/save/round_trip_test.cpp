@@ -173,6 +173,21 @@ TEST(RoundTrip, ANumberWithoutItsColoursIsTheSameNumber) {
   EXPECT_EQ(read.color1, board.color1);
 }
 
+// Files of 0.6 do not exchange the colours, but the file that is written is of version 3.
+TEST(RoundTrip, NumbersOfACheckerboardOfAnOldFileAreTheSame) {
+  const Scene scene = load(sceneXml(std::string(kBoard) + R"(<shape type="sphere"><bsdf type="mask">
+    <ref name="opacity" id="board"/><bsdf type="diffuse"/></bsdf></shape>)" +
+                                        std::string(kSensor),
+                                    "0.6.0"));
+  const auto boardOf = [](const Scene& s) {
+    return std::get<CheckerboardTexture>(s.textures.at(s.materials.at(0).opacity->texture).kind);
+  };
+  const CheckerboardTexture board = boardOf(scene), again = boardOf(savedAndLoaded(scene));
+  EXPECT_NEAR(board.color0[0], 0.4, 1e-15);
+  EXPECT_EQ(again.color0, board.color0);
+  EXPECT_EQ(again.color1, board.color1);
+}
+
 // Colours and a grey one, in 8 bits and beyond them.
 TEST(RoundTrip, BitmapsAsColoursNumbersAndNormals) {
   const Folder folder;
