@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <thread>
 
 #include "library/errors.h"
@@ -53,7 +54,7 @@ void refuseOptionsOfOtherMethods(const api::RenderOptions& options, Method metho
       {"--direct-pass", options.directPass, isPpm, "has no such choice"},
       {"--connection-roulette", options.connectionRoulette != byDefault.connectionRoulette, hasConnectionRoulette,
        "has no roulette of connections"},
-      {"--roulette", options.roulette != byDefault.roulette, hasRouletteChoice, "ends walks by throughput"},
+      {"--roulette", options.roulette != byDefault.roulette, hasRouletteChoice, "has no such choice"},
       {"--guide", options.guide != byDefault.guide, isGpt, kNoGuide},
       {"--guide-memory", !options.guideMemory.empty(), isGpt, kNoGuide},
       {"--mlt", otherMlt, isMlt, kNoChains},
@@ -70,11 +71,17 @@ void refuseOptionsOfOtherMethods(const api::RenderOptions& options, Method metho
 }
 
 // Refuses what the variant of mlt would ignore. Throws UsageError.
-void refuseOptionsOfOtherVariants(const api::RenderOptions& options, const RenderSettings& settings) {
+void refuseOptionsOfOtherVariants(const api::RenderOptions& options, const RenderSettings& settings,
+                                  const Scene& scene) {
   const MetropolisSettings& chains = settings.metropolis;
+  const std::string_view variant = kMetropolisVariantNames[static_cast<size_t>(chains.variant)];
   if (!canLeaveDirectLight(chains.variant) && !chains.directPass) {
-    throw UsageError(fmt::format("--no-direct-pass: {} has no direct pass; expected --mlt mmlt or pathspace",
-                                 kMetropolisVariantNames[static_cast<size_t>(chains.variant)]));
+    throw UsageError(fmt::format("--no-direct-pass: {} has no direct pass; expected --mlt mmlt or pathspace", variant));
+  }
+  // What the scene says fits every variant.
+  const bool otherDepth = options.rrDepth != 0 && options.rrDepth != scene.defaults.rrDepth;
+  if (otherDepth && chains.variant != MetropolisVariant::pssmlt) {
+    throw UsageError(fmt::format("--rr-depth: {} ends no walk by roulette; expected --mlt pssmlt", variant));
   }
   // Chains draw numbers of their own. Only the direct pass asks the sampler.
   const bool direct = canLeaveDirectLight(chains.variant) && chains.directPass;
@@ -153,7 +160,7 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
 RenderSettings renderSettings(const api::RenderOptions& options, const Scene& scene) {
   RenderSettings settings = settingsOfAnyMethod(options, scene);
   refuseOptionsOfOtherMethods(options, settings.method);
-  if (settings.method == Method::mlt) refuseOptionsOfOtherVariants(options, settings);
+  if (settings.method == Method::mlt) refuseOptionsOfOtherVariants(options, settings, scene);
   return settings;
 }
 

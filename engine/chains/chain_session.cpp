@@ -3,7 +3,6 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -31,14 +30,6 @@ constexpr double kRoundSeconds = 0.05;
 
 // Mutations of a pixel, in the mean, to a sample of its direct light: a quarter or so of the time goes there.
 constexpr uint64_t kMutationsPerDirect = 2;
-
-// A number in [0, 1) that depends on the seed and epoch alone (the finalizer of SplitMix64, Steele et al. 2014).
-double startOffset(uint64_t seed, uint64_t epoch) {
-  uint64_t x = seed * 0x9e3779b97f4a7c15u + epoch;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-53;
-}
 
 template <class S>
 class ChainSession final : public PlannedSession<S> {
@@ -80,7 +71,7 @@ class ChainSession final : public PlannedSession<S> {
   std::vector<char> bootstrapped_;  // which waves of the next epoch's bootstrap samples are traced
   uint64_t directDone_ = 0;         // direct light samples of each pixel, of this share; some may have more
   uint64_t step_ = 0;               // steps that every chain has taken
-  double stepSeconds_ = 0;          // that the latest took
+  double stepSeconds_ = 0;          // that the latest with light took
   std::vector<StuckChain> stuck_;   // at the ends of epochs
 };
 
@@ -269,16 +260,21 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
         if (step_ >= goal) return;
         // All chains start anew at the first step of an epoch.
         if (epochs_.count() <= step_ / restart && !beginEpoch(step_ / restart, stop)) return;
-        // Run a round of steps, which ends with the epoch at the latest. Steps of an epoch without light count too.
+        // Run a round of steps, which ends with the epoch at the latest. Steps of an epoch without light count too, but
+        // cost nothing and do not tell how long others take. Direct light is to keep up with them.
         const double before = clock.look();
-        uint64_t steps = stepsInTime(std::min(restart - step_ % restart, goal - step_), end - before);
+        const uint64_t most = std::min(restart - step_ % restart, goal - step_);
+        const bool dark = epochs_.dark();
+        const uint64_t steps = dark ? std::min(most, kTurnSteps) : stepsInTime(most, end - before);
         if (steps == 0) return;
-        // Without light they cost nothing and time does not limit them; direct light is to keep up with them.
-        if (epochs_.dark()) steps = std::min(steps, kTurnSteps);
-        if (!epochs_.dark()) advance(steps);
+        if (dark) {
+          progressPaths_.fetch_add(steps * settings_.chainsOfShare(), std::memory_order_relaxed);
+        } else {
+          advance(steps);
+          stepSeconds_ = (clock.look() - before) / static_cast<double>(steps);
+        }
         step_ += steps;
         epochs_.addSteps(steps);
-        stepSeconds_ = (clock.look() - before) / static_cast<double>(steps);
       }
     });
   }
@@ -293,12 +289,14 @@ RenderStatistics ChainSession<S>::statistics() const {
   out.paths = mutations();
   // Make the rows of the stages, and add up what all workers have counted.
   for (std::string& name : stageNames(plan_.pipeline)) out.stages.push_back({std::move(name)});
+  out.memory.splats = film_.splats().bytes();
   for (const auto& worker : workers_) {
     out.counters += worker->counters;
     out.bytesPerPath = worker->bytesPerPath();
     out.memory.waves +=
         (worker->joinsWalks() ? kWavesOfJoinedWalks : 1) * waveBytes(worker->bytesPerPath(), settings_.waveSize) +
         worker->pathBytes();
+    out.memory.splats += worker->splatBytes();
     out.memory.lightVertices += worker->lightBytes();
     addTallies(worker->tallies, 0, out.stages);
   }
@@ -324,10 +322,12 @@ RenderStatistics ChainSession<S>::statistics() const {
   chains.stuck = stuck_;
   chains_->listStuck(chains.stuck);
   out.counters.nonFinite += chains.counters.nonFinite;
-  // Walks of chains end where their strategies say, and those of the direct pass after its two edges: nothing is cut.
-  out.counters.cutPaths = 0;
-  out.counters.cutThroughput = 0;
-  out.memory.splats = film_.splats().bytes();
+  // With two walks to a path, walks end where their strategy says, and those of the direct pass after its two edges:
+  // longer paths are left out, and none is cut.
+  if (plan_.pipeline.lightPass() != nullptr) {
+    out.counters.cutPaths = 0;
+    out.counters.cutThroughput = 0;
+  }
   out.memory.chains = chains.bytes + epochs_.targets.size() * kBootstrapSampleBytes;
   return out;
 }

@@ -84,6 +84,7 @@ template <class S>
 void ChainWaves<S>::clear() {
   for (size_t wave = 0; wave < size(); ++wave) {
     std::fill_n(static_cast<float*>(states_[wave].columns.target), layout_.chainsOf(wave), 0.0f);
+    std::fill_n(static_cast<uint32_t*>(states_[wave].columns.rejections), layout_.chainsOf(wave), 0u);
   }
 }
 

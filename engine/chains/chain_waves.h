@@ -28,7 +28,7 @@ class ChainWaves {
   // from now on is multiplied by splatFactor.
   void start(size_t wave, uint64_t epoch, const BootstrapPlan& bootstrap, const std::vector<uint32_t>& starts,
              double splatFactor, ChainWorker<S>& worker);
-  // No sample has found light to start from: all chains are nowhere.
+  // No sample has found light to start from: all chains are nowhere, and none is stuck.
   void clear();
   // The chains of a wave take steps first, first + 1, ...
   void advance(size_t wave, uint64_t first, uint64_t steps, ChainWorker<S>& worker);

@@ -39,6 +39,7 @@ class ChainWorker {
   const PathMutations<S>& mutations() const { return *paths_; }
   size_t bytesPerPath() { return wave_.bytesPerPath(); }
   bool joinsWalks() const { return ends_.has_value(); }
+  size_t splatBytes() const { return splats_.bytes(); }
   size_t lightBytes() const { return joinsWalks() ? light_.bytes() : 0; }
   size_t pathBytes() const {
     return paths_ ? PathMutations<S>::bytesFor(wave_.rays.capacity(), law_.maxEdges, needs_) : 0;

@@ -7,6 +7,14 @@
 
 namespace wavecrest {
 
+double startOffset(uint64_t seed, uint64_t epoch) {
+  // The increment comes before the finalizer, which maps 0 to 0.
+  uint64_t x = (seed + 1) * 0x9e3779b97f4a7c15u + epoch;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-53;
+}
+
 std::vector<BlockSums> Epochs::begin() {
   std::vector<BlockSums> blocks = sumsOf(plan_, targets);
   for (size_t i = 0; i < blocks.size(); ++i) {

@@ -13,6 +13,10 @@ namespace wavecrest {
 class StateReader;
 class StateWriter;
 
+// Where in [0, 1) startSamples begins in an epoch: a number that depends on the seed and epoch alone (SplitMix64,
+// Steele et al. 2014).
+double startOffset(uint64_t seed, uint64_t epoch);
+
 class Epochs {
  public:
   std::vector<float> targets;  // of the bootstrap samples of the epoch that is to begin

@@ -11,10 +11,8 @@
 //  - A column that this scene and method do not need is dropped before bind() and costs no memory.
 #pragma once
 
-#include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <tuple>

@@ -23,7 +23,7 @@ WAVECREST_INLINE Contribution proposedContribution(const Wave<S>& wave, const Ch
                                                    ChainCounters& counters) {
   const Vec3<Float> value =
       to<Float>(loadVec3(wave.radiance.red, wave.radiance.green, wave.radiance.blue, i)) * load(chains.scale, i);
-  const Float luminance = mulAdd(value.x, Float(0.2126f), mulAdd(value.y, Float(0.7152f), value.z * Float(0.0722f)));
+  const Float luminance = luminanceOf(value);
   const Mask finite = (luminance >= Float(0)) & (luminance < Float(1e37f));
   counters.nonFinite += countTrue(andNot(active, finite));
   // Below that the reciprocal is no number either.

@@ -102,7 +102,8 @@ class Rows {
       // The step of x_1 ends at the light: f c L n_0 / (d^2 light[0]). No eye walk meets a delta light. The densities
       // of x_0 and x_1 from the light's side are those of emission.
       const Vec3<Real> radiance = gatherVec3(headers_.lightR, headers_.lightG, headers_.lightB, lane_);
-      const Vec3<Real> emitted = radiance * edge.beam * (eye / max(edge.position, Real(1e-37f)));
+      const Real overLight = zeroUnless(edge.position > Real(0), eye / max(edge.position, Real(1e-37f)));
+      const Vec3<Real> emitted = radiance * edge.beam * overLight;
       scattering.step = select(first, scattering.step * emitted, scattering.step);
       eye = select(first & edge.delta, Real(0), eye);
       storeWhere(edge.position, first, v_.light, lane_);

@@ -83,10 +83,7 @@ void joinPaths(const StageContext<typename P::Storage>& context, Wave<typename P
     const Vec3<Real> near = offsetOrigin(y, normalAt(v, yAt), yOffset, -segment);
     const Vec3<Real> end = select(infinite, z + segment, near);
     const Vec3<Real> visible{Real(1), Real(1), Real(1)};
-    appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);
-    appendVec3(to<Float>(end - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
-    appendVec3(visible, lit, shadow.red, shadow.green, shadow.blue, out);
-    append(lane, lit, shadow.target, out);
+    appendShadowRays(shadow, lit, origin, end, visible, lane, out);
     out += countTrue(lit);
   }
   shadow.size = out;

@@ -50,7 +50,7 @@ void proposeMutations(const StageContext<typename P::Storage>& context, Wave<typ
     store(select(large, none, load(chains.cameraVertices, i)), chains.cameraLive, i);
     store(select(large, none, load(chains.lightVertices, i)), chains.lightLive, i);
     // 48 bits: the grid of 2^-24 alone would let through a targets' ratio of any smallness once in 2^24 steps.
-    store(mulAdd(toUnitInterval(u.c), Float(0x1p-24f), toUnitInterval(u.b)), chains.threshold, i);
+    store(thresholdOf(u.b, u.c), chains.threshold, i);
     if (state.multiplexed) {
       chooseStrategy(context, lane, i);
     } else {

@@ -5,8 +5,6 @@
 // plans and their lanes sorted by mutation; the rows that the proposals keep, copied; Chains::threshold and what the
 // sampler and arrive ask about a chain. A chain without a path, and every chain of a bootstrap, makes one anew, of the
 // length that the engine wants.
-#include <algorithm>
-
 #include "kernels/mutate/path_lanes.h"
 #include "kernels/mutate/path_law_lanes.h"
 #include "kernels/stage_declarations.h"
@@ -161,7 +159,7 @@ WAVECREST_NOINLINE void proposeWave(const StageContext<S>& context, const Wave<S
     // Random numbers of the step: its kind, its acceptance threshold, and what the mutation chooses.
     const ChainNumbers step = chainBits(context.sampler, source, 0, ChainUse::step);
     const ChainNumbers more = chainBits(context.sampler, source, 1, ChainUse::step);
-    store(mulAdd(toUnitInterval(step.c), Float(0x1p-24f), toUnitInterval(step.b)), chains.threshold, i);
+    store(thresholdOf(step.b, step.c), chains.threshold, i);
     const UInt edges = paths.current == nullptr ? zero : load(paths.current->headers.edges, i);
     const Mask large = (toUnitInterval(step.a) < Float(context.chains.state->samples.largeStep)) | (edges == zero);
 

@@ -7,7 +7,6 @@
 // Ends of all depths are gathered, so the stages that join them run once on full blocks of lanes instead of once per
 // depth on a few lanes each, and need not know that the walks of a wave have different lengths.
 #include <algorithm>
-#include <cassert>
 
 #include "kernels/columns/chains.h"
 #include "kernels/mis_lanes.h"

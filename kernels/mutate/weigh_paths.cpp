@@ -7,8 +7,6 @@
 //
 // Everything is relative to the density q of an eye walk that chooses x_0 on the light by itself: f / q is a product of
 // steps of the size of albedos, and the density of a path made with s light vertices is q times light / eye of these.
-#include <algorithm>
-
 #include "kernels/mutate/path_lanes.h"
 #include "kernels/mutate/path_law_lanes.h"
 #include "kernels/mutate/path_pattern.h"
@@ -180,11 +178,6 @@ WAVECREST_NOINLINE Double restOfReference(const StageContext<S>& context, const 
   return select(large, rest, rest * to<Double>(toFloat(fromKinds)));
 }
 
-template <class Real>
-WAVECREST_INLINE Real luminanceOf(Vec3<Real> c) {
-  return mulAdd(c.x, Real(0.2126f), mulAdd(c.y, Real(0.7152f), c.z * Real(0.0722f)));
-}
-
 // What suits the proposals, one by one: loops over events end after a few rows.
 template <class S>
 WAVECREST_INLINE void findPatterns(const StageContext<S>& context) {
@@ -279,11 +272,14 @@ WAVECREST_NOINLINE void weighWave(const StageContext<S>& context, Wave<S>& wave)
       ratio = select(somewhere, zeroUnless(possible, min(quotient, Double(1e30))), ratio);
       storeWhere(Float(1), somewhere, chains.target, lane);
     }
-    // What the film gets: the colour at the proposed pixel, scaled so that its luminance is the ratio.
-    const Vec3<Real> colour = zeroUnless(lit, value);
+    // What the film gets: the colour at the proposed pixel, scaled so that its luminance is the ratio. What is no
+    // number stays none, for acceptMutations to count.
+    const Mask number = luminance - luminance == Real(0);
+    const Vec3<Real> colour = select(andNot(active & pixel.onFilm, number), value, zeroUnless(lit, value));
     storeWhere(colour, active, wave.radiance.red, wave.radiance.green, wave.radiance.blue, lane);
-    const Float scale = to<Float>(ratio / to<Double>(select(lit, luminance, Real(1))));
-    storeWhere(scale, active, chains.scale, lane);
+    // Within the range of a float, so that a very dim path can replace one that is dimmer by far.
+    const Double scale = min(ratio / to<Double>(select(lit, luminance, Real(1))), Double(3e38));
+    storeWhere(to<Float>(scale), active, chains.scale, lane);
     storeWhere(pixel.index, active, chains.proposedPixel, lane);
   }
 }

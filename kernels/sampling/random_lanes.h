@@ -21,6 +21,14 @@ struct Uniform4 {
 // The upper 24 bits as a number in [0,1).
 WAVECREST_INLINE Float toUnitInterval(UInt bits) { return toFloat(shiftRight<8>(bits)) * Float(0x1p-24f); }
 
+// The number in [0, 1) of 48 bits, the upper 24 bits of `upper` and those of `lower`, rounded down to a float. For
+// every float a in [0, 1] the probability of a threshold below a is a, rounded up to 2^-48: 1 for a = 1.
+WAVECREST_INLINE Float thresholdOf(UInt upper, UInt lower) {
+  // sum - high is exact (Fast2Sum, Dekker 1971), and above `low` only where the sum was rounded up.
+  const Float high = toUnitInterval(upper), low = toUnitInterval(lower) * Float(0x1p-24f), sum = high + low;
+  return select(low < sum - high, fromBits(bits(sum) - UInt(1u)), sum);
+}
+
 WAVECREST_INLINE Uniform4 independentUniform4(const SamplerSettings& sampler, UInt path, uint32_t block,
                                               Stream stream) {
   // Lanes that are iterations ahead carry into no bit of another meaning: see SamplerSettings::iteration.

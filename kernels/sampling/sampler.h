@@ -14,7 +14,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string_view>
 
 namespace wavecrest {
@@ -39,14 +38,6 @@ constexpr std::string_view toString(SamplerKind kind) {
   return kNames[static_cast<size_t>(kind)];
 }
 
-// The inverse of toString; nothing for any other word.
-constexpr std::optional<SamplerKind> parseSamplerKind(std::string_view word) {
-  for (const SamplerKind kind : kAllSamplerKinds) {
-    if (word == toString(kind)) return kind;
-  }
-  return std::nullopt;
-}
-
 // What the numbers are for; paths of different streams share path indices but no numbers.
 // filter: the place in the pixel that all samples of an iteration share (StageContext::sharedPlace).
 // guide: of camera paths, whether the guide draws, its bin and the place in it (2).
@@ -55,9 +46,10 @@ enum class Stream : uint32_t { camera, light, bootstrap, chain, scene, filter, g
 // Each vertex has four blocks of four numbers; this is the one table of their uses.
 enum class Block : uint32_t {
   scatter = 0,  // lobe, direction (2), roulette; of a camera path's origin: raster (2), lens (2); of a light's: light,
-                // direction (2), choice within the light
+                // direction (2), choice within the light; of stream filter: place in the pixel (2)
   light = 1,    // next event: light, choice within the light, position (2); of a light path's origin: position (2),
-                // face of the scene's box
+                // face of the scene's box; of a light path's other vertices: lens (2), pixel that a filter reaches (2);
+                // of a caustic perturbation: angle
   opacity = 2,  // (a) which surfaces the edge to the vertex passes; (d) roulette of connections; of a multiplexed
                 // camera path's origin: strategy
   environment = 3  // texel of the environment map (2), place within (2)

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
+#include "engine/chains/chain_waves.h"
 #include "engine/chains/chain_worker.h"
 #include "engine/chains/epochs.h"
 #include "engine/pilot/bootstrap.h"
@@ -155,6 +156,43 @@ TEST(Epochs, weighTheirBrightnessBySteps) {
   EXPECT_DOUBLE_EQ(epochs.pooledWith(largeSteps, false).mean, (0 + 0 + 1 + 3 + 5 + 5 + 7 + 11) / 8.0);
 }
 
+// An offset of 0 would always start the first chain from the first sample with light.
+TEST(Epochs, startWithinTheUnitInterval) {
+  for (uint64_t seed = 0; seed < 16; ++seed) {
+    for (uint64_t epoch = 0; epoch < 16; ++epoch) {
+      EXPECT_GT(startOffset(seed, epoch), 0) << seed << ' ' << epoch;
+      EXPECT_LT(startOffset(seed, epoch), 1) << seed << ' ' << epoch;
+    }
+  }
+}
+
+// Chains that are stuck at the end of an epoch are listed then, and not again after an epoch without light.
+TEST(ChainWaves, areNotStuckOnceTheyAreNowhere) {
+  Scene scene = sceneFile("cornell-diffuse", 40, 30);
+  scene.emitters.clear();  // all proposals are dark and rejected
+  for (Shape& shape : scene.shapes) shape.emitter = kNone;
+  RenderSettings settings;
+  settings.method = Method::mlt;
+  settings.metropolis.variant = MetropolisVariant::pssmlt;
+  settings.metropolis.chains = 40;
+  settings.isa = bestIsa();
+  const RenderPlan<float> plan = planRender<float>(scene, settings);
+  const FilmArea area = filmArea(scene.film);
+  SplatFilms films(area.pixels.size(), 1, 1.0);
+  ChainWorker<float> worker(plan, settings.waveSize, films);
+  ChainWaves<float> chains(plan, settings, area);
+  ASSERT_EQ(chains.size(), 1u);
+  chains.start(0, 0, plainBootstrap(1), std::vector<uint32_t>(40, 0u), 1, worker);
+  chains.advance(0, 0, kStuckRejections, worker);
+  std::vector<StuckChain> stuck;
+  chains.listStuck(stuck);
+  EXPECT_EQ(stuck.size(), kListedStuckChains);
+  chains.clear();
+  stuck.clear();
+  chains.listStuck(stuck);
+  EXPECT_TRUE(stuck.empty());
+}
+
 struct ChainCase {
   const char* scene;
   MetropolisVariant variant;
@@ -185,6 +223,9 @@ class SceneChains {
     worker_.trace(context_, state, count_, false, &paths_);
   }
   void decide() { worker_.decide(context_, state, false); }
+  // In path space: where the chains are, and what they propose.
+  PathStore<float>& paths() { return paths_; }
+  const PathMutations<float>& mutations() const { return worker_.mutations(); }
   // Luminance of a chain's proposal.
   double proposed(size_t i) const {
     const auto& radiance = worker_.wave().radiance;
@@ -241,6 +282,41 @@ TEST_P(ChainTest, stateIsWhatItsSamplesSay) {
     ++lit;
   }
   EXPECT_GT(lit, 100u);
+}
+
+// Whether the factors of a path's contribution are numbers.
+bool hasNumbers(const PathStore<float>& paths, size_t lane) {
+  for (size_t row = 1; row < paths.headers.edges[lane]; ++row) {
+    if (!std::isfinite(paths.vertices.stepR[row * paths.stride() + lane])) return false;
+  }
+  return true;
+}
+
+// Some proposals keep the vertex whose factor is no number. They are counted.
+TEST(PathSpaceChains, countWhatIsNoNumber) {
+  constexpr size_t kChains = 333;
+  const ChainCase chosen{"cornell-diffuse", MetropolisVariant::pathspace};
+  SceneChains chains(sceneFile(chosen.scene, 40, 30), chosen, bestIsa(), kChains);
+  constexpr uint32_t kSteps = 20;
+  for (uint32_t step = 0; step < kSteps; ++step) {
+    chains.trace(step);
+    chains.decide();
+  }
+  EXPECT_EQ(chains.state.counters.nonFinite, 0u);
+  PathStore<float>& paths = chains.paths();
+  for (size_t i = 0; i < kChains; ++i) {
+    if (paths.headers.edges[i] < 4) continue;
+    paths.vertices.stepR[paths.stride() + i] = std::numeric_limits<float>::quiet_NaN();  // of row 1
+  }
+  chains.trace(kSteps);
+  const PathMutations<float>& mutations = chains.mutations();
+  size_t expected = 0;
+  for (size_t i = 0; i < mutations.laneCount; ++i) {
+    expected += hasNumbers(mutations.proposed, mutations.lanes[i]) ? 0 : 1;
+  }
+  EXPECT_GT(expected, 0u);
+  chains.decide();
+  EXPECT_EQ(chains.state.counters.nonFinite, expected);
 }
 
 // Walks, their ends and what joins them, at odd counts: the scalar twin's proposals are the same. A path that only

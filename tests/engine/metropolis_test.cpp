@@ -318,6 +318,35 @@ TEST(Metropolis, directLightKeepsUpWithChainsThatHaveNone) {
   ASSERT_TRUE(statistics.chains);
   EXPECT_GT(statistics.chains->directPaths, 0u);
   EXPECT_GE(statistics.chains->directPaths + 4 * kPixels, statistics.chains->mutations / 2);
+  EXPECT_EQ(session->progressPaths(), statistics.chains->mutations);
+}
+
+// A lamp fills half of the view, so half of all bootstraps of one sample are dark. The steps of a dark epoch do not
+// tell how long those of the next one take.
+TEST(Metropolis, timeLimitsTheEpochAfterADarkOne) {
+  Scene scene;
+  addShape(scene, Rectangle{{0, -1, 0}, {1, 0, 0}, {0, 2, 0}}, addDiffuse(scene, 0, 0, 0));
+  makeLight(scene, {1, 1, 1});
+  setCamera(scene, {0, 0, 1}, 60, kWidth, kHeight);
+  RenderSettings chosen = metropolis(MetropolisVariant::pssmlt);
+  chosen.limits.maxDepth = 1;
+  chosen.metropolis.bootstrapSamples = 1;
+  // Find a seed whose first epoch is dark and whose second is lit. Here an iteration is a step, and a step an epoch.
+  chosen.metropolis.chains = kWidth * kHeight;
+  chosen.metropolis.restartSteps = 1;
+  const auto isLitAfter = [&](uint64_t epochs) {
+    const auto session = Session::create(scene, chosen);
+    session->renderUntil(epochs, std::nullopt);
+    return session->statistics().chains->brightness > 0;
+  };
+  while (isLitAfter(1) || !isLitAfter(2)) ASSERT_LT(++chosen.seed, 100u);
+  // An epoch takes seconds.
+  constexpr uint32_t kChains = 1 << 16, kSteps = 2000;
+  chosen.metropolis.chains = kChains;
+  chosen.metropolis.restartSteps = kSteps;
+  const auto session = Session::create(scene, chosen);
+  session->renderUntil(std::nullopt, 0.2);
+  EXPECT_LT(session->statistics().chains->mutations, 2 * uint64_t{kSteps} * kChains);
 }
 
 TEST(Metropolis, rendersNothingWhereThereIsNoLight) {

@@ -113,5 +113,37 @@ TEST_P(DistantLightTest, pathsStartOnTheFacesThatTheLightShinesOnWithTheirDensit
   }
 }
 
+// Some directions towards a small sun round to outside of its disc, where the density is 0. Their paths carry nothing,
+// and their sums are finite even where the box is so large that its area over 1e-30 overflows.
+TEST_P(DistantLightTest, pathsThatRoundingLedPastTheRimOfTheSunAreDark) {
+  const float black[3]{}, probability = 1;
+  const AliasEntry entry{1.0f, 0};
+  const Point towardsSun = normalized({0.3, 0.8, -0.4});
+  EnvironmentView& map = scene_.view.environment;
+  map.texels = black;
+  map.probability = &probability;
+  map.table = &entry;
+  map.width = map.height = 1;
+  map.isSky = true;
+  map.sunShare = 1;
+  map.sunChord2 = 7.6e-11;  // 0.001 degrees from rim to rim
+  for (size_t i = 0; i < 3; ++i) {
+    map.toLocal[i][i] = 1;
+    map.sunDirection[i] = towardsSun[i];
+    map.sunRadiance[i] = 1;
+  }
+  std::fill_n(scene_.view.halfExtent, 3, 1e5);
+  setLight(LightKind::envmap, towardsSun);
+  size_t dark = 0;
+  forEachPath([&](const Wave<float>& wave, size_t i) {
+    ASSERT_TRUE(std::isfinite(wave.paths.throughputR[i]));
+    ASSERT_TRUE(std::isfinite(wave.paths.dVC[i]));
+    ASSERT_TRUE(std::isfinite(wave.paths.dVCM[i]));
+    dark += wave.paths.throughputR[i] > 0 ? 0 : 1;
+  });
+  EXPECT_GT(dark, 0u) << "none was led past the rim";
+  EXPECT_LT(dark, kLightPaths * kIterations / 100);
+}
+
 }  // namespace
 }  // namespace wavecrest

@@ -38,7 +38,14 @@ std::array<uint32_t, 4> philox10(const std::array<uint32_t, 4>& x, uint64_t key,
   return lastLanes(philox4x32<10>(PhiloxBlock{a, x[1], x[2], x[3]}, philoxKey(key)));
 }
 
-constexpr SamplerEntries kSamplerEntries = {.lanes = kLanes, .fill = fill, .philox10 = philox10};
+void thresholds(const uint32_t* upper, const uint32_t* lower, size_t count, float* out) {
+  for (size_t i = 0; i < count; i += kLanes) {
+    storeUnaligned(thresholdOf(loadUnaligned(upper + i), loadUnaligned(lower + i)), out + i);
+  }
+}
+
+constexpr SamplerEntries kSamplerEntries = {
+    .lanes = kLanes, .fill = fill, .philox10 = philox10, .thresholds = thresholds};
 WAVECREST_REGISTER_ENTRIES(SamplerEntries, kSamplerEntries);
 
 }  // namespace

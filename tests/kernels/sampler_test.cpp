@@ -1,5 +1,6 @@
 // Random numbers: the generator against published vectors, the same bits on every instruction set, and statistics.
 #include <cmath>
+#include <random>
 
 #include "tests/effort.h"
 #include "tests/kernels/isa_test.h"
@@ -103,6 +104,26 @@ TEST_P(SamplerTest, numbersLieOnTheGridBelowOne) {
   }
 }
 
+// Rounded down, a threshold is below a float a exactly where the 48-bit number is, and never 1.
+TEST_P(SamplerTest, thresholdsAreRoundedDown) {
+  constexpr size_t kCount = effort(1 << 16, 1 << 12);
+  std::vector<uint32_t> upper(kCount), lower(kCount);
+  std::mt19937 random(5);
+  for (size_t i = 0; i < kCount; ++i) {
+    upper[i] = static_cast<uint32_t>(random()) >> (i % 32);  // of every magnitude
+    lower[i] = static_cast<uint32_t>(random());
+  }
+  upper[0] = lower[0] = ~0u;
+  std::vector<float> actual(kCount);
+  entries<SamplerEntries>().thresholds(upper.data(), lower.data(), kCount, actual.data());
+  EXPECT_EQ(actual[0], 0x1.fffffep-1f);
+  for (size_t i = 0; i < kCount; ++i) {
+    const double exact = (upper[i] >> 8) * 0x1p-24 + (lower[i] >> 8) * 0x1p-48;
+    ASSERT_LE(double{actual[i]}, exact) << upper[i] << ' ' << lower[i];
+    ASSERT_GT(double{std::nextafter(actual[i], 2.0f)}, exact) << upper[i] << ' ' << lower[i];
+  }
+}
+
 // ---- statistics over the paths of one iteration, for both samplers: pixels must not resemble their neighbours
 // --------
 
@@ -176,12 +197,6 @@ TEST(IndependentSampler, iterationsAreIndependent) {
               kMaxDeviations);
     EXPECT_LT(std::abs(runsDeviations(column)), kMaxDeviations);
   }
-}
-
-TEST(SamplerNames, parseIsTheInverseOfToString) {
-  for (const SamplerKind kind : kAllSamplerKinds) EXPECT_EQ(parseSamplerKind(toString(kind)), kind);
-  EXPECT_EQ(parseSamplerKind("halton"), std::nullopt);
-  EXPECT_EQ(parseSamplerKind(""), std::nullopt);
 }
 
 }  // namespace

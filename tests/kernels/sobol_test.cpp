@@ -1,9 +1,10 @@
 // The Sobol sampler: its points form nets, they integrate better than independent ones, and sets do not resemble each
 // other.
+#include <gtest/gtest.h>
+
 #include <cmath>
 
 #include "kernels/sampling/sobol_directions.h"
-#include "tests/kernels/isa_test.h"
 #include "tests/kernels/sample_columns.h"
 #include "tests/kernels/statistics.h"
 

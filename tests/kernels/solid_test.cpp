@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "kernels/extend/find_solids.h"
-#include "kernels/extend/offset.h"
 #include "tests/effort.h"
 #include "tests/kernels/closed_bodies.h"
 #include "tests/kernels/intersectors.h"

@@ -64,6 +64,7 @@ TEST(RenderSettings, theSamplerIsTheBestOfTheMethodUnlessItIsChosen) {
     EXPECT_EQ(renderSettings({.method = method}, Scene()).sampler, SamplerKind::independent) << method;
   }
   EXPECT_EQ(renderSettings({.method = "gpt", .guide = "radiance"}, Scene()).sampler, SamplerKind::independent);
+  EXPECT_EQ(renderSettings({.method = "gpt", .guide = "off"}, Scene()).sampler, SamplerKind::sobol) << "path tracing";
   EXPECT_EQ(renderSettings({.method = "pt", .sampler = "independent"}, Scene()).sampler, SamplerKind::independent);
   EXPECT_EQ(renderSettings({.method = "ppm", .sampler = "sobol"}, Scene()).sampler, SamplerKind::sobol);
 }
@@ -73,6 +74,19 @@ TEST(RenderSettings, rouletteIsEfficientUnlessItIsChosen) {
   EXPECT_EQ(renderSettings({.roulette = "throughput"}, Scene()).roulette, Roulette::throughput);
   EXPECT_EQ(renderSettings({.method = "vcm", .roulette = "albedo"}, Scene()).roulette, Roulette::albedo);
   EXPECT_NE(refusalOfRender({.roulette = "luck"}).find("throughput, albedo, efficiency"), std::string::npos);
+}
+
+TEST(RenderSettings, rouletteDepthIsRefusedWhereNoWalkEndsByRoulette) {
+  EXPECT_EQ(refusalOfRender({.method = "mlt", .rrDepth = 3}),
+            "--rr-depth: mmlt ends no walk by roulette; expected --mlt pssmlt");
+  EXPECT_EQ(refusalOfRender({.method = "mlt", .rrDepth = 3, .mlt = "pathspace"}),
+            "--rr-depth: pathspace ends no walk by roulette; expected --mlt pssmlt");
+  EXPECT_NO_THROW(renderSettings({.method = "mlt", .rrDepth = 3, .mlt = "pssmlt"}, Scene()));
+  // What the scene says, in its file or again by the option.
+  Scene scene;
+  scene.defaults.rrDepth = 3;
+  EXPECT_NO_THROW(renderSettings({.method = "mlt"}, scene));
+  EXPECT_NO_THROW(renderSettings({.method = "mlt", .rrDepth = 3}, scene));
 }
 
 TEST(RenderSettings, vcmMergesAtFirstVerticesUnlessItIsToldOtherwise) {
