@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cmath>
-
 #include "bench/extremes/extremes_report.h"
 #include "bench/report/html_text.h"
 #include "bench/report/plain_page.h"

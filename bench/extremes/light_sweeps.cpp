@@ -98,7 +98,7 @@ void addRadiances(std::vector<Sweep>& out) {
                  .scene = [](double x) { return besideBrightRoom(0.5, x); },
                  .truth = [](double) { return 2.0; },
                  .bound = 1e-3,
-                 .boundSource = "1 / (1 - albedo); a tenth of all picks goes to all lights alike",
+                 .boundSource = "1 / (1 - albedo); half of all picks goes to all emitters alike, of pt an eighth",
                  .methods = {Method::pt, Method::lt, Method::bpt},
                  .leftOut = "vcm, ppm, bpm: a bias of 3 %; mlt: its bootstrap sees the camera's room alone",
                  .samples = samples(64)});

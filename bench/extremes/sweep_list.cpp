@@ -2,8 +2,6 @@
 // is, and where its bound comes from.
 #include <fmt/core.h>
 
-#include <cmath>
-
 #include "bench/extremes/extreme_scenes.h"
 #include "bench/extremes/sweep_parts.h"
 

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <limits>
-#include <span>
 
 #include "engine/scene/scene.h"
 #include "kernels/extend/leaves.h"

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <optional>
 #include <span>
-#include <string>
 
 #include "engine/compile/materials.h"
 #include "engine/compile/scene_geometry.h"

@@ -14,8 +14,9 @@
 namespace wavecrest {
 namespace {
 
-// Share of the light picks that goes to all emitters alike. An emitter's power says little about what reaches one
-// place: a lamp above a table may give it as much as the sky does, with a thousandth of the sky's power.
+// Share of the light picks that goes to all emitters alike, except black ones. An emitter's power says little about
+// what reaches one place: a lamp above a table may give it as much as the sky does, with a thousandth of the sky's
+// power.
 constexpr double kEvenShare = 0.5;
 
 // Kernels choose the entry of a table, and whether it is kept, by random numbers of 24 bits.
@@ -34,6 +35,19 @@ double areaOf(const PrimitiveRecord<S>& primitive) {
   }
   const double parallelogram = length(cross(widenedRecord(primitive.e1), widenedRecord(primitive.e2)));
   return static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::quad ? parallelogram : parallelogram / 2;
+}
+
+// Shares of the light picks of emitters of these powers. Black emitters get none, unless all are black.
+std::vector<double> sharesByPower(const std::vector<double>& power) {
+  std::vector<double> shares = evenedShares(power, kEvenShare);
+  const auto all = static_cast<double>(power.size());
+  const auto lit = static_cast<double>(std::ranges::count_if(power, [](double p) { return p > 0; }));
+  if (lit == 0 || lit == all) return shares;
+  // The others share the even part.
+  for (size_t i = 0; i < shares.size(); ++i) {
+    shares[i] = power[i] > 0 ? shares[i] + kEvenShare * (1 / lit - 1 / all) : 0;
+  }
+  return shares;
 }
 
 Double3 positionOf(const ProjectorEmitter& projector) {
@@ -128,7 +142,7 @@ class LightCollector {
     }
     // The emitters' shares of all picks.
     if (lights_.emitters != 0) {
-      PickedLights<S> picked = withPicks(lights_, evenedShares(power, kEvenShare));
+      PickedLights<S> picked = withPicks(lights_, sharesByPower(power));
       lights_.records = std::move(picked.records);
       lights_.table = std::move(picked.table);
     }

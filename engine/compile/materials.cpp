@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "engine/compile/rough_boundary.h"
 #include "engine/scene/scene_error.h"
@@ -244,11 +243,9 @@ class Compiler {
   const bool passes_;
 };
 
-bool hasNormalMap(const Material& material) { return material.bumpTexture != kNone || material.normalTexture != kNone; }
-
 // Flags of how a material looks from behind, and of how its bump or normal map is applied.
 uint32_t sidesOf(const Material& material) {
-  if (!hasNormalMap(material)) return material.twoSided ? uint32_t{kTwoSided} : 0u;
+  if (!material.hasMap()) return material.twoSided ? uint32_t{kTwoSided} : 0u;
   const NormalMapping& mapping = material.normalMapping;
   uint32_t flags = kMapped;
   if (mapping.flipInvalidNormals) flags |= kFlipsNormals;
@@ -279,7 +276,7 @@ bool isTextured(const Material& material, const Scene& scene) {
                    return b.weightTexture != kNone || std::any_of(b.materials.begin(), b.materials.end(), part);
                  }},
       material.kind);
-  return anyTexture || hasNormalMap(material) || (material.opacity && textured(*material.opacity));
+  return anyTexture || material.hasMap() || (material.opacity && textured(*material.opacity));
 }
 
 }  // namespace
@@ -310,7 +307,7 @@ uint32_t materialFeatures(const Material& material, const Scene& scene) {
   if (material.opacity) features |= kLayeredBsdfs | kSpecularBsdfs;
   // Tangents come from texture coordinates.
   if (isTextured(material, scene) || isAnisotropic(material, scene)) features |= kTextures;
-  if (hasNormalMap(material)) features |= kTextures | kNormalMaps;
+  if (material.hasMap()) features |= kTextures | kNormalMaps;
   return features;
 }
 

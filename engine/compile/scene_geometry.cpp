@@ -1,8 +1,6 @@
 #include "engine/compile/scene_geometry.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <map>
 #include <string>
 

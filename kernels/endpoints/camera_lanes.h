@@ -1,4 +1,4 @@
-// Camera rays in lanes: pinhole now and always; lens and parallel rays only where the feature set has them.
+// Camera rays in lanes: pinhole, lens and parallel rays; the camera decides.
 #pragma once
 
 #include <cmath>

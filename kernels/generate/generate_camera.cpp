@@ -1,8 +1,8 @@
 // generate: starts one camera path per lane of the wave.
 //
 // in: the pixels of paths [firstPath, firstPath + pathCount), or none for paths that choose them. out: Rays, PathStates
-// [pathCount], in lane order; Radiance set to zero. The raster position is uniform in the pixel, so W_j cos / p = 1 and
-// the throughput begins at 1.
+// [pathCount], in lane order; Radiance set to zero. The raster position is distributed like the reconstruction filter
+// around the pixel, so W_j cos / p = 1 and the throughput begins at 1.
 #include "kernels/endpoints/camera_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/stage_declarations.h"

@@ -140,7 +140,9 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromMap(const SceneView<typena
   const Vec3<Real> toLight = sampleMap<Real>(scene.environment, more);
   const MapPoint<Real> point = mapPoint(scene.environment, toLight);
   const Real area = projectedArea<Real>(scene, toLight);
-  const Real inverseEmission = area / (max(mapPdfW(scene.environment, point), Real(1e-30f)) * light.pick);
+  // Where rounding has led to a density of 0 there is no light.
+  const Real pdf = mapPdfW(scene.environment, point);
+  const Real inverseEmission = zeroUnless(pdf > Real(0), area / (pdf * light.pick));
   return {pointOfEntry<P>(scene, -toLight, v),
           -toLight,
           mapRadiance(scene.environment, point) * inverseEmission,
@@ -202,8 +204,8 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
     storeVec3(ray.direction, rays.directionX, rays.directionY, rays.directionZ, i);
     storeVec3(ray.throughput, paths.throughputR, paths.throughputG, paths.throughputB, i);
     storeMis<kFeatures>(ray.mis, paths, i);
-    // Russian roulette compares throughputs with the first one (METHODS 1.5).
-    store(Real(1) / max(maxComponent(ray.throughput), Real(1e-30f)), paths.rouletteScale, i);
+    // Russian roulette compares throughputs with the first one (METHODS 1.5). The bound keeps its reciprocal finite.
+    store(Real(1) / max(maxComponent(ray.throughput), Real(1e-37f)), paths.rouletteScale, i);
     store(lane, paths.lane, i);
     store(picked, paths.light, i);
   }

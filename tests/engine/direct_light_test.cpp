@@ -10,6 +10,7 @@
 #include "engine/scene/vector_math.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"
+#include "tests/load/scene_file.h"
 
 namespace wavecrest {
 namespace {
@@ -144,6 +145,26 @@ TEST_P(DirectLightTest, ofManyLightsOfDifferentPower) {
 
 INSTANTIATE_TEST_SUITE_P(PathTracing, DirectLightTest, testing::ValuesIn(allVariants()),
                          [](const auto& instance) { return nameOf(instance.param); });
+
+// A sun lights a floor by its irradiance, whatever its size: within 5e-6 for the cosines of its disc, and one in 10^4
+// directions towards the smallest sun rounds to outside of it.
+TEST(DirectLight, ofASunDoesNotDependOnItsSize) {
+  const auto brightness = [](const std::string& aperture) {
+    const Scene scene = loadBody(
+        "<sensor type=\"perspective\"><float name=\"fov\" value=\"20\"/><transform name=\"to_world\">"
+        "<lookat origin=\"0, 0, 5\" target=\"0, 0, 0\" up=\"0, 1, 0\"/></transform>"
+        "<film type=\"hdrfilm\"><integer name=\"width\" value=\"16\"/><integer name=\"height\" value=\"16\"/></film>"
+        "</sensor><shape type=\"rectangle\"/><emitter type=\"sunsky\"><float name=\"sky_scale\" value=\"0\"/>"
+        "<vector name=\"sun_direction\" value=\"0.6, 0, 0.8\"/><float name=\"sun_aperture\" value=\"" +
+        aperture + "\"/></emitter>");
+    return sumOf(render(scene, settingsFor({Precision::floating, SamplerKind::independent, Accel::small}), 64));
+  };
+  const double expected = brightness("0.5358");
+  EXPECT_GT(expected, 0);
+  for (const char* aperture : {"0.02", "1e-5"}) {
+    EXPECT_NEAR(brightness(aperture), expected, 1e-3 * expected) << aperture;
+  }
+}
 
 // Path tracing reads a light's texture where a ray meets it and where it was sampled, light tracing where light set
 // out.

@@ -1,4 +1,5 @@
-// How often each light is picked: half by the power that it sends onto the scene, half evenly among emitters.
+// How often each light is picked: half by the power that it sends onto the scene, half evenly among emitters that
+// are not black.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -120,6 +121,15 @@ TEST(LightPicks, countWhatLightFromFarAwaySendsOntoTheScenesBox) {
   };
   EXPECT_NEAR(picksOf(floorWith(sun("1, 0, 0") + pointLight(1), 5))[0], 0.25, 0.01);
   EXPECT_GT(picksOf(floorWith(sun("0, 0, -1") + pointLight(1), 5))[0], 0.25 + 0.5 * 0.85);
+}
+
+TEST(LightPicks, leaveOutBlackEmitters) {
+  EXPECT_EQ(picksOf(floorWith(lamp(2, 0) + pointLight(1))), (std::vector<double>{0, 1}));
+  const std::vector<double> picks = picksOf(floorWith(pointLight(3) + pointLight(0) + pointLight(1)));
+  ASSERT_EQ(picks.size(), 3u);
+  EXPECT_NEAR(picks[0], 0.5 * 0.75 + 0.25, 0x1p-23);
+  EXPECT_EQ(picks[1], 0);
+  EXPECT_NEAR(picks[2], 0.5 * 0.25 + 0.25, 0x1p-23);
 }
 
 TEST(LightPicks, addUpToOneWhereNothingShines) {

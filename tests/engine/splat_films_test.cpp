@@ -143,6 +143,8 @@ TEST(SplatFilms, areTheSameForAnyNumberOfWorkers) {
     EXPECT_EQ(films.regions() > 1, threads > kSplatFilms);
     forEach(threads, [&](size_t worker) {
       SplatWriter<float> writer(films, addSplatsOf<float>(bestIsa()), kQueueCapacity);
+      EXPECT_EQ(writer.bytes(), SplatWriter<float>::bytesFor(kPixels, threads, kQueueCapacity));
+      EXPECT_EQ(writer.bytes() > 0, threads > kSplatFilms);
       Queue<float> queue(kQueueCapacity);
       StageCounters counters;
       for (size_t i = worker; i < kQueues; i += threads) {
@@ -203,6 +205,36 @@ INSTANTIATE_TEST_SUITE_P(Methods, AnyBrightness, testing::ValuesIn([] {
                            return methods;
                          }()),
                          [](const auto& instance) { return std::string(toString(instance.param)); });
+
+// Light paths of the faint lamp begin with a throughput of pi / 100 times its radiance, 2e-31. Roulette compares later
+// throughputs with it, so the same paths survive as of a bright lamp. The box is grey and seen at no grazing angle: no
+// contribution is small enough to be flushed to zero.
+TEST(FaintLamp, isTheSameImageAsABrightOne) {
+  const auto image = [](double radiance) {
+    Scene scene;
+    scene.name = "box";
+    const uint32_t grey = addDiffuse(scene, 0.6, 0.6, 0.6);
+    addShape(scene, Rectangle{{-0.5, -0.5, 0.5}, {1, 0, 0}, {0, 0, -1}}, grey);       // floor
+    addShape(scene, Rectangle{{-0.5, 0.5, -0.5}, {1, 0, 0}, {0, 0, 1}}, grey);        // ceiling
+    addShape(scene, Rectangle{{-0.5, -0.5, -0.5}, {1, 0, 0}, {0, 1, 0}}, grey);       // back
+    addShape(scene, Rectangle{{0.5, -0.5, 0.5}, {-1, 0, 0}, {0, 1, 0}}, grey);        // front
+    addShape(scene, Rectangle{{-0.5, -0.5, 0.5}, {0, 0, -1}, {0, 1, 0}}, grey);       // left
+    addShape(scene, Rectangle{{0.5, -0.5, -0.5}, {0, 0, 1}, {0, 1, 0}}, grey);        // right
+    addShape(scene, Rectangle{{-0.05, 0.4, -0.05}, {0.1, 0, 0}, {0, 0, 0.1}}, grey);  // lamp, facing down
+    makeLight(scene, {radiance, radiance, radiance});
+    setCamera(scene, {0, 0, 0.4}, 60, 16, 16);
+    RenderSettings settings;
+    settings.method = Method::lt;
+    settings.isa = bestIsa();
+    settings.threads = 2;
+    return render(scene, settings, 32);
+  };
+  constexpr int kExponent = -97;
+  const RgbImage bright = image(1), faint = image(std::ldexp(1.0, kExponent));
+  for (size_t i = 0; i < bright.size(); ++i) {
+    ASSERT_EQ(std::ldexp(faint[i], -kExponent), bright[i]) << "value " << i;
+  }
+}
 
 }  // namespace
 }  // namespace wavecrest
