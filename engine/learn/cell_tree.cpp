@@ -19,10 +19,8 @@ CellTree::CellTree(const double (&center)[3], const double (&halfExtent)[3], siz
   view_.nodes = nodes_.data();
   view_.starts = starts_.data();
   for (int axis = 0; axis < 3; ++axis) {
-    const double extent = 2 * halfExtent[axis];
     view_.least[axis] = static_cast<float>(center[axis] - halfExtent[axis]);
-    // A flat scene has one layer of cells.
-    view_.scale[axis] = extent > 0 ? static_cast<float>((1u << kCellBitsOfAxis) / extent) : 0;
+    view_.scale[axis] = static_cast<float>((1u << kCellBitsOfAxis) / (2 * halfExtent[axis]));
   }
 }
 

@@ -12,8 +12,8 @@ namespace wavecrest {
 
 class CellTree {
  public:
-  // One cell for each root, over the box of this centre and half extent. mostCells: no split makes more, at least
-  // kCellRoots.
+  // One cell for each root, over the box of this centre and half extent, which is positive. mostCells: no split makes
+  // more, at least kCellRoots.
   CellTree(const double (&center)[3], const double (&halfExtent)[3], size_t mostCells);
 
   // Valid as long as the tree.

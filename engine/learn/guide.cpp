@@ -12,8 +12,10 @@
 namespace wavecrest {
 namespace {
 
-// A value of a typical pixel's brightness has 2^20 units, its square 2^28; a visit 2^8.
-constexpr int kUnitBits = 20, kSquareUnitBits = 28, kVisitBits = 8;
+// A value of 2^e, e the exponent of a typical pixel's brightness, has 2^20 units, its square 2^22; a visit has 2^8. So
+// kAddendLimit cuts squares of values above 2^14.5 x 2^e, which is 11,600 to 23,200 times the typical brightness, and
+// those of values below 2^-11.5 x 2^e round to 0.
+constexpr int kUnitBits = 20, kSquareUnitBits = 22, kVisitBits = 8;
 // A cell with more records is split, one with fewer than kLeastRecords keeps to the BSDF.
 constexpr uint64_t kSplitRecords = 8192, kLeastRecords = 512;
 // Before it knows better a cell asks BSDF and guide alike.
@@ -71,7 +73,10 @@ size_t Guide::bytesOfCell() {
          kGuideBins * (sizeof(uint64_t) + sizeof(uint32_t));
 }
 
-size_t Guide::cellsFor(size_t bytes) { return std::max<size_t>(bytes / bytesOfCell(), kCellRoots); }
+// Kernels read indices of bins as signed numbers of 32 bits.
+size_t Guide::cellsFor(size_t bytes) {
+  return std::clamp<size_t>(bytes / bytesOfCell(), kCellRoots, size_t{1} << (31 - kGuideBinBits));
+}
 
 template <class T>
 Guide::Zeros<T> Guide::zeros(size_t count) {

@@ -69,7 +69,9 @@ class Guide {
     uint64_t records = 0;
     // Of what records weigh: times slope where that is positive; times -slope where negative; times slope^2.
     uint64_t up = 0, down = 0, curvature = 0;
-    // Visits, those included whose paths ended, in units of 2^-kVisitBits; and over them the squares of values.
+    // Visits of recorded vertices, in units of 2^-kVisitBits: a path that survived with probability q counts as 1 / q
+    // visits. Over them the squares of values. Nothing is recorded where the direction carries no light (f = 0), behind
+    // depth kRecordedDepths, and in iterations that do not gather (engine/learn/blocks.h).
     uint64_t visits = 0, squares = 0;
 
     // What a half of a cell begins with, and what a block leaves to the next: half of all but the sums of slopes.

@@ -11,8 +11,9 @@
 namespace wavecrest {
 
 constexpr uint64_t kSumLimit = uint64_t{1} << 62;
-// One addend is at most this. Threads that add at the same time overshoot the limit by one each, far from overflow.
-constexpr double kAddendLimit = 0x1p48;
+// One addend is at most this. Threads that add at the same time overshoot the limit by one each: with 4096 threads, the
+// most that a render may have, sums stay below 2^62 + 4096 x 2^51 < 2^64.
+constexpr double kAddendLimit = 0x1p51;
 
 // Rounds a value in units; one that is not finite and positive adds nothing.
 inline uint64_t toAddend(double value) {

@@ -3,15 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "engine/learn/integer_sums.h"
 
 namespace wavecrest {
 namespace {
 
-// So that the squares of a block's first vertices, of which there are a million, stay far from the sums' limit.
+// A record stands for at most 20 paths, so it adds less than 2^45 to the squares and less than 2^13 to the count. A
+// block has 2^20 first vertices, or one for each pixel, at most 2^28: the squares reach kSumLimit at a mean square of
+// 2^34, more than kMostWorth allows, or 2^26.
 constexpr int kSquareBits = 8;
 constexpr float kMostWorth = 0x1p16f;
+// A wave's own sum of squares joins the others as soon as it reaches this, so it stays below kAddendLimit.
+constexpr uint64_t kMostPending = uint64_t{1} << 50;
 // A run of pixels counts as at least this part of the image's mean brightness.
 constexpr double kDarkest = 0.05;
 // Root mean square of the worths at the first vertices. With less, paths end that would bring more than they cost
@@ -23,10 +28,14 @@ constexpr double kFirstWorth = 12;
 void PathWorth::gather(const DirectionRecords& records) {
   uint64_t count = 0, squares = 0;
   for (size_t i = 0; i < records.size; ++i) {
-    const float worth = std::min(records.worth[i], kMostWorth);
+    const double worth = static_cast<double>(std::min(records.worth[i], kMostWorth));
     if (!(worth > 0)) continue;
-    ++count;
-    squares += toAddend(std::ldexp(static_cast<double>(worth) * static_cast<double>(worth), kSquareBits));
+    // A path that went on stands for those that ended there, too.
+    const double paths = 1 / static_cast<double>(records.survival[i]);
+    count += toAddend(std::ldexp(paths, kSquareBits));
+    squares += toAddend(std::ldexp(worth * worth * paths, kSquareBits));
+    if (squares >= kMostPending) [[unlikely]]
+      addTo(squares_, std::exchange(squares, 0));
   }
   addTo(count_, count);
   addTo(squares_, squares);
@@ -34,8 +43,7 @@ void PathWorth::gather(const DirectionRecords& records) {
 
 void PathWorth::fold(std::span<const float> luminance) {
   if (squares_ > 0) {
-    norm_ *=
-        std::sqrt(std::ldexp(static_cast<double>(squares_), -kSquareBits) / static_cast<double>(count_)) / kFirstWorth;
+    norm_ *= std::sqrt(static_cast<double>(squares_) / static_cast<double>(count_)) / kFirstWorth;
     hasNorm_ = true;
   }
   squares_ = count_ = 0;

@@ -33,8 +33,10 @@ class PathWorth {
 
  private:
   std::vector<float> perBrightness_;  // scale / brightness, of runs of pixels
-  uint64_t squares_ = 0, count_ = 0;  // over vertices of the first depth: sum of worth^2, in units of 2^-kSquareBits
-  double norm_ = 1;                   // by which worths are divided
+  // Sum of worth^2 over the first vertices, and their number, those included whose paths roulette ended there; in units
+  // of 2^-kSquareBits.
+  uint64_t squares_ = 0, count_ = 0;
+  double norm_ = 1;  // by which worths are divided
   bool hasBrightness_ = false, hasNorm_ = false;
 };
 

@@ -1,4 +1,5 @@
-// The parts that learning is made of: blocks of iterations, sums of integers, cells, and histograms as alias tables.
+// The parts that learning is made of: blocks of iterations, sums of integers, cells, histograms as alias tables; and
+// what a guide makes of records.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "engine/learn/alias_table.h"
 #include "engine/learn/blocks.h"
 #include "engine/learn/cell_tree.h"
+#include "engine/learn/guide.h"
 #include "engine/learn/integer_sums.h"
 #include "engine/learn/learned_directions.h"
 #include "tests/engine/saved_state.h"
@@ -122,7 +124,7 @@ TEST(AliasTable, drawsEveryBinWithExactlyItsUnits) {
   }
 }
 
-constexpr double kCenter[3] = {1, 2, 3}, kHalf[3] = {4, 4, 0};
+constexpr double kCenter[3] = {1, 2, 3}, kHalf[3] = {4, 4, 2};
 
 // The cell of a place in [0, 1)^3 of the box, as kernels find it.
 uint32_t cellAt(const CellTreeView& tree, uint32_t root, const std::array<double, 3>& place) {
@@ -146,7 +148,12 @@ TEST(CellTree, halvesTheBoxAlongItsAxesInTurn) {
   EXPECT_EQ(cellAt(tree.view(), 2, {0.6, 0.4, 0}), right);
   EXPECT_EQ(cellAt(tree.view(), 2, {0.6, 0.6, 0}), far);
   EXPECT_EQ(cellAt(tree.view(), 3, {0.6, 0.6, 0}), 3u);
-  EXPECT_EQ(tree.view().scale[2], 0) << "a flat scene";
+  // 1024 places along each axis, whatever the box's shape.
+  constexpr float kLeast[3] = {-3, -2, 1}, kScale[3] = {128, 128, 256};
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(tree.view().least[axis], kLeast[axis]) << axis;
+    EXPECT_EQ(tree.view().scale[axis], kScale[axis]) << axis;
+  }
 }
 
 TEST(CellTree, splitsNoFurtherThanItMay) {
@@ -184,6 +191,98 @@ TEST(CellTree, comesBackFromItsBytesAndFromNoOthers) {
     } catch (const StateError&) {
     }
   }
+}
+
+// Records of paths that went on from cell 0 into one bin, and what each of them brought back.
+struct Brought {
+  size_t count = 0;
+  float value = 1, survival = 1, slope = 0;
+  uint32_t bin = 85;
+};
+
+void teach(Guide& guide, const Brought& brought) {
+  DirectionRecords records;
+  Arena arena(records.bytes(brought.count));
+  records.bind(arena, brought.count);
+  records.size = brought.count;
+  for (size_t i = 0; i < brought.count; ++i) {
+    records.bin[i] = brought.bin;
+    records.inverseThroughput[i] = 1;
+    records.pdf[i] = 0.25f;
+    records.slope[i] = brought.slope;
+    records.survival[i] = brought.survival;
+  }
+  Radiance<float> radiance;  // of the one lane that all records are of
+  Arena lane(radiance.bytes(1));
+  radiance.bind(lane, 1);
+  radiance.red[0] = radiance.green[0] = radiance.blue[0] = brought.value;
+  guide.gather(records, radiance);
+}
+
+// For pixels of brightness 1.
+Guide untaughtGuide() { return {kCenter, kHalf, GuideTarget::radiance, 0, 1}; }
+
+TEST(Guide, learnsFromSumsOfWhichHalfRemain) {
+  Guide guide = untaughtGuide();
+  teach(guide, {.count = 600, .value = 1});
+  teach(guide, {.count = 600, .value = 4, .survival = 0.5f});
+  guide.fold();
+  // A path that survived with probability 1/2 is two visits, one of which brought nothing. The mean square is (600 +
+  // 600 x 16 / 2) / (600 + 1200).
+  EXPECT_NEAR(guide.view().roots[0], std::sqrt(3.0), 1e-5);
+  LearnedDirections learned = guide.learnedIn(0);
+  EXPECT_EQ(learned.guidedShare, 0.5);
+  // 64, 8 and 1 % of the histogram, whose bins have an area of 1/64.
+  EXPECT_NEAR(learned.squareDensity[85], 40.96, 0.01);
+  for (const size_t side : {69u, 84u, 86u, 101u}) EXPECT_NEAR(learned.squareDensity[side], 5.12, 0.01) << side;
+  for (const size_t corner : {68u, 70u, 100u, 102u}) EXPECT_NEAR(learned.squareDensity[corner], 0.64, 0.01) << corner;
+  EXPECT_EQ(learned.squareDensity[87], 0);
+  EXPECT_EQ(guide.learnedIn(1).guidedShare, 0) << "a cell without records";
+  EXPECT_EQ(guide.statistics().records, 600u);
+  EXPECT_EQ(guide.statistics().guidedShare, 0) << "before the fold";
+
+  // The second block has half of the first one's sums as well. A bin on an edge has neighbours over it.
+  constexpr size_t kEdge = 5 * kGuideSide, kOpposite = 10 * kGuideSide;
+  teach(guide, {.count = 1000, .value = 2, .bin = kEdge});
+  guide.fold();
+  EXPECT_NEAR(guide.view().roots[0], std::sqrt((2700.0 + 4000) / (900 + 1000)), 1e-5);
+  learned = guide.learnedIn(0);
+  EXPECT_NEAR(learned.squareDensity[85] / learned.squareDensity[kEdge], 1500.0 / 2000, 1e-3);
+  EXPECT_NEAR(learned.squareDensity[kOpposite] / learned.squareDensity[kEdge], 8.0 / 64, 1e-3);
+  EXPECT_NEAR(learned.squareDensity[kOpposite + kGuideSide] / learned.squareDensity[kEdge], 1.0 / 64, 1e-3);
+  EXPECT_EQ(guide.statistics().guidedShare, 0.5);
+}
+
+// Newton's step is sum(v s) / sum(v s^2), at most 0.2, over the slopes s of one block.
+TEST(Guide, movesTheShareByTheSlopesOfABlock) {
+  Guide guide = untaughtGuide();
+  teach(guide, {.count = 1000});
+  guide.fold();
+  const auto shareAfter = [&](size_t up, size_t down) {
+    teach(guide, {.count = up, .slope = 0.5f});
+    teach(guide, {.count = down, .slope = -0.5f});
+    guide.fold();
+    return 1 - guide.learnedIn(0).guidedShare;
+  };
+  EXPECT_NEAR(shareAfter(300, 100), 0.7, 1e-6) << "100 / 100 is cut";
+  EXPECT_NEAR(shareAfter(210, 190), 0.8, 1e-6) << "10 / 100";
+  EXPECT_NEAR(shareAfter(600, 0), double{kMostBsdfShare}, 1e-6);
+  EXPECT_NEAR(shareAfter(285, 315), double{kMostBsdfShare} - 0.1, 1e-6) << "-15 / 150";
+}
+
+TEST(Guide, keepsSquaresOfRareBrightPaths) {
+  Guide guide = untaughtGuide();
+  teach(guide, {.count = 1000, .value = 5000});
+  guide.fold();
+  EXPECT_NEAR(guide.view().roots[0], 5000, 0.01);
+  EXPECT_EQ(guide.statistics().saturated, 0u);
+}
+
+// Kernels read indices of bins as signed numbers of 32 bits.
+TEST(Guide, hasNoMoreBinsThanIndices) {
+  const size_t bytesOfCell = Guide::bytesFor(0) / kCellRoots;
+  EXPECT_EQ(Guide::bytesFor(100 * bytesOfCell), 100 * bytesOfCell);
+  EXPECT_EQ(Guide::bytesFor(size_t{1} << 40), bytesOfCell * ((size_t{1} << 31) / kGuideBins));
 }
 
 }  // namespace

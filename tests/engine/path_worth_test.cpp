@@ -17,13 +17,16 @@ namespace {
 
 constexpr size_t kPixels = 3 * kWorthRun + 5;  // the last run is short
 
-// Records of vertices of the first depth that have these worths.
+// Records of vertices of the first depth that have these worths, whose paths survived with this probability.
 class Records {
  public:
-  explicit Records(std::span<const float> worths) : arena_(records_.bytes(worths.size())) {
+  explicit Records(std::span<const float> worths, float survival = 1) : arena_(records_.bytes(worths.size())) {
     records_.bind(arena_, worths.size());
     records_.size = worths.size();
-    for (size_t i = 0; i < worths.size(); ++i) records_.worth[i] = worths[i];
+    for (size_t i = 0; i < worths.size(); ++i) {
+      records_.worth[i] = worths[i];
+      records_.survival[i] = survival;
+    }
   }
   const DirectionRecords& get() const { return records_; }
 
@@ -70,6 +73,28 @@ TEST(PathWorth, isTwelveAtTheFirstVerticesWhateverTheUnits) {
       EXPECT_NEAR(viewOf(worth).perBrightness[run] * 3 * brightness, 12, 0.05) << unit << ", run " << run;
     }
   }
+}
+
+// Half of 2000 vertices are worth 17, half 0.05: their root mean square is 12.02, whoever survives.
+TEST(PathWorth, isTwelveOverAllFirstVerticesNotOverSurvivorsAlone) {
+  PathWorth worth(kPixels);
+  worth.fold(bright({1, 1, 1, 1}));
+  EXPECT_EQ(viewOf(worth).perBrightness[0], 12);
+  worth.gather(Records(std::vector<float>(950, 17.0f), 0.95f).get());
+  worth.gather(Records(std::vector<float>(50, 0.05f), 0.05f).get());
+  worth.fold(bright({1, 1, 1, 1}));
+  EXPECT_NEAR(viewOf(worth).perBrightness[0], 12 * 12 / 12.02, 0.02);
+}
+
+TEST(PathWorth, holdsTheLimitOfItsSums) {
+  PathWorth worth(kPixels);
+  worth.fold(bright({1, 1, 1, 1}));
+  // 20 x 900,000 squares of 2^32, in units of 2^-8, are more than 2^64.
+  constexpr size_t kRecords = 900'000;
+  worth.gather(Records(std::vector<float>(kRecords, 1e30f), 0.05f).get());
+  worth.fold(bright({1, 1, 1, 1}));
+  const double meanSquare = 0x1p62 / (20.0 * kRecords * 0x1p8);
+  EXPECT_NEAR(viewOf(worth).perBrightness[0] * std::sqrt(meanSquare), 12 * 12, 0.1);
 }
 
 TEST(PathWorth, takesNoPixelForDarkerThanATwentiethOfTheImage) {

@@ -87,6 +87,7 @@ RenderSettings triedSettings(Method method) {
   settings.method = method;
   settings.isa = bestIsa();
   takeProgramDefaults(settings);
+  settings.sampler = bestSampler(settings);
   return settings;
 }
 
@@ -111,6 +112,24 @@ TEST(Evcm, choosesByTheScene) {
   EXPECT_EQ(choiceFor(sceneFile("cornell-spheres", 64, 48)).method, Method::vcm);
 }
 
+// Trials of evcm draw independent samples. The render has less variance by Sobol points, where they serve the method.
+TEST(Evcm, countsWhatMethodsGainBySobolPoints) {
+  const Scene scene = sceneFile("cornell-diffuse", 64, 48);  // no candidate is far behind the best
+  RenderSettings settings = evcmSettings();
+  ASSERT_EQ(settings.sampler, SamplerKind::sobol);
+  const MethodChoice bySobol = choiceFor(scene, settings);
+  settings.sampler = SamplerKind::independent;
+  const MethodChoice byIndependent = choiceFor(scene, settings);
+  ASSERT_EQ(bySobol.trials.size(), 4u);
+  for (size_t i = 0; i < bySobol.trials.size(); ++i) {
+    const MethodTrial &sobol = bySobol.trials[i], &independent = byIndependent.trials[i];
+    const double gain = sobol.method == Method::lt ? 1 : 1.15;
+    EXPECT_EQ(sobol.iterations, independent.iterations) << toString(sobol.method);
+    EXPECT_NEAR(independent.variance / sobol.variance, gain, 1e-9) << toString(sobol.method);
+    EXPECT_EQ(independent.missed, sobol.missed) << toString(sobol.method);
+  }
+}
+
 TEST(Trials, areTheSameForAnySeedThreadsAndWaves) {
   const Scene scene = sceneFile("cornell-mirror", 64, 48);
   for (const Method method : {Method::evcm, Method::gpt}) {
@@ -132,8 +151,7 @@ TEST(Trials, areTheSameForAnySeedThreadsAndWaves) {
 }
 
 TEST(Gpt, takesAGuideWhereItPays) {
-  RenderSettings settings = triedSettings(Method::gpt);
-  settings.sampler = bestSampler(settings);
+  const RenderSettings settings = triedSettings(Method::gpt);
   // Nearly all surfaces see the lamp, which next event estimation finds; and a box with the caustic of a mirror, which
   // only directions find.
   EXPECT_EQ(choiceFor(sceneFile("cornell-diffuse", 64, 48), settings).method, Method::pt);
@@ -215,7 +233,6 @@ TEST(Evcm, choosesForCropsAndSinglePixels) {
 
 void expectImageOfChoice(const Scene& scene, Method method) {
   RenderSettings settings = triedSettings(method);
-  settings.sampler = bestSampler(settings);
   const auto session = Session::create(scene, settings);
   session->renderUntil(2, std::nullopt);
   const RenderStatistics statistics = session->statistics();
