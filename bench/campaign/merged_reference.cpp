@@ -1,7 +1,6 @@
 #include "bench/campaign/merged_reference.h"
 
 #include <cassert>
-#include <utility>
 
 namespace wavecrest {
 
@@ -19,7 +18,7 @@ Reference mergedReference(const MergedParts& merged) {
                                .sampler = word("sampler"),
                                .precision = word("precision"),
                                .seed = render.at("seed").get<uint64_t>(),
-                               .maxDepth = render.at("max_depth").get<uint32_t>(),
+                               .maxDepth = stats.at("max_depth").get<uint32_t>(),  // as renderReference has it
                                .rouletteDepth = render.at("rr_depth").get<uint32_t>(),
                                .radius = render.value("radius", 0.0),
                                .radiusAlpha = render.value("radius_alpha", 0.0),

@@ -223,6 +223,9 @@ void failCheckpoint(const std::string& file, const std::string& wrong, const std
 
 void Checkpoint::cutAlike(RenderSettings& settings) const {
   if (dependsOnWaves(settings.method)) settings.piecesForThreads = header_.cut.at("threads").get<uint32_t>();
+  // On fewer threads than before, a budget of memory has room for more light paths.
+  const auto lightPaths = header_.render.find("light_paths");
+  if (settings.memoryBytes && lightPaths != header_.render.end()) settings.mostLightPaths = lightPaths->get<uint64_t>();
 }
 
 void requireSameRender(const std::string& file, const Json& found, const Json& wanted,

@@ -70,7 +70,8 @@ class Checkpoint {
   // Throws CheckpointError where the file is damaged or no checkpoint, ImageError where it cannot be read.
   explicit Checkpoint(const std::string& file);
 
-  // Settings with which a session can go on: light paths are cut as they were. To be applied before it is made.
+  // Settings with which a session can go on: light paths are cut as they were, and a budget of memory allows no more of
+  // them. To be applied before it is made.
   void cutAlike(RenderSettings& settings) const;
   // Restores the session's state; it must be new. Throws CheckpointError with the first difference where scene or
   // settings are others than those of the checkpoint.

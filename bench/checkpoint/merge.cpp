@@ -53,8 +53,8 @@ class Spread {
     return std::sqrt(sum / static_cast<double>(mean.size()));
   }
 
-  // Whether both halves have as many iterations.
-  bool isEven() const { return 2 * firstWeight_ == weight_; }
+  // Whether there are two halves, of as many iterations each.
+  bool isEven() const { return weight_ > 0 && 2 * firstWeight_ == weight_; }
   std::array<std::vector<float>, 2> halves() const {
     std::array<std::vector<float>, 2> images;
     for (size_t i = 0; i < sums_.size(); ++i) {

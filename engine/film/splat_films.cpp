@@ -25,6 +25,8 @@ uint32_t bitsOfRegions(size_t pixels, size_t threads) {
   return static_cast<uint32_t>(std::bit_width((std::max<size_t>(pixels, 1) - 1) / kRegions));
 }
 
+size_t regionsOf(size_t pixels, uint32_t regionBits) { return ((std::max<size_t>(pixels, 1) - 1) >> regionBits) + 1; }
+
 }  // namespace
 
 SplatFilm::SplatFilm(size_t pixels, size_t regions, double scale)
@@ -34,8 +36,10 @@ SplatFilm::SplatFilm(size_t pixels, size_t regions, double scale)
       sums_{low_.get(), high_.get(), scale} {}
 
 SplatFilms::SplatFilms(size_t pixels, size_t threads, double scale)
-    : pixels_(pixels), scale_(scale), regionBits_(bitsOfRegions(pixels, threads)) {
-  regions_ = ((std::max<size_t>(pixels, 1) - 1) >> regionBits_) + 1;
+    : pixels_(pixels),
+      scale_(scale),
+      regionBits_(bitsOfRegions(pixels, threads)),
+      regions_(regionsOf(pixels, regionBits_)) {
   for (size_t i = 0; i < std::min(threads, kSplatFilms); ++i) {
     films_.push_back(std::make_unique<SplatFilm>(pixels, regions_, scale));
   }
@@ -96,6 +100,11 @@ SplatWriter<S>::SplatWriter(SplatFilms& films, AddSplats<S> addSplats, size_t ca
   arena_ = Arena(sorted_.bytes(capacity));
   sorted_.bind(arena_, capacity);
   begins_.resize(films.regions() + 1);
+}
+
+template <class S>
+size_t SplatWriter<S>::bytesFor(size_t pixels, size_t threads, size_t capacity) {
+  return regionsOf(pixels, bitsOfRegions(pixels, threads)) == 1 ? 0 : Splats<S>().bytes(capacity);
 }
 
 // Counting sort by region.

@@ -6,7 +6,6 @@
 // image is the same bit for bit whichever film and order they were added in.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <cstdlib>
@@ -91,6 +90,10 @@ class SplatWriter {
   // capacity: of the wave's queue.
   SplatWriter(SplatFilms& films, AddSplats<S> addSplats, size_t capacity);
   void drain(Splats<S>& splats, StageCounters& counters);
+
+  size_t bytes() const { return arena_.used(); }
+  // The same of each writer, where so many threads have one.
+  static size_t bytesFor(size_t pixels, size_t threads, size_t capacity);
 
  private:
   void sort(const Splats<S>& splats);

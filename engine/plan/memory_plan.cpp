@@ -30,6 +30,7 @@ class Planner {
         settings_(settings),
         area_(area),
         emptyStore_(settings.waveSize, plan.needs, plan.lightUse),
+        partners_(settings.waveSize, plan.needs, {.merged = false}),
         pilot_(pilot) {
     if (settings.lightPaths && !plan.pipeline.has(Fold::photonMap)) {
       throw std::invalid_argument("planMemory: a number of light paths for " + std::string(toString(settings.method)));
@@ -53,7 +54,10 @@ class Planner {
       // Beside the image its luminances, of pixels and of tiles, from which roulette learns (engine/waves/learner.cpp).
       if (settings_.roulette == Roulette::efficiency) use.image += pixels * sizeof(float) * 65 / 64;
     }
-    if (plan_.pipeline.splats()) use.splats = SplatFilms::bytesFor(pixels, settings_.threads);
+    if (plan_.pipeline.splats()) {
+      use.splats = SplatFilms::bytesFor(pixels, settings_.threads) +
+                   settings_.threads * SplatWriter<S>::bytesFor(pixels, settings_.threads, settings_.waveSize);
+    }
     if (plan_.pipeline.chains) {
       addChains();
     } else if (plan_.pipeline.lightPass()) {
@@ -93,6 +97,7 @@ class Planner {
     memory_.splatScale = std::ldexp(1.0, kSplatUnitBits - static_cast<int>(exponent));
     const double spread = pilot_.paths < wanted ? kSpread : 1;
     memory_.verticesPerWave = static_cast<size_t>(spread * static_cast<double>(pilot_.room));
+    if (plan_.lightUse.connected) memory_.partnerVertices = partnerVertices();
     memory_.lightPaths = wanted;
     if (plan_.pipeline.has(Fold::photonMap) && settings_.memoryBytes) fitLightPaths(*settings_.memoryBytes);
     memory_.use.lightVertices = vertexBytes(memory_.lightPaths);
@@ -102,17 +107,34 @@ class Planner {
     }
   }
 
-  // Of a wave per thread, or with a photon map of all waves of the iterations under way.
+  // Room in a thread's own store. Without a photon map its light walks end there. With one, the vertices of any
+  // waveSize light paths are collected there, of fewer paths some of them several times; LightStore::collect asks for
+  // room for one more depth.
+  size_t partnerVertices() const {
+    if (!plan_.pipeline.has(Fold::photonMap)) return memory_.verticesPerWave;
+    const auto collected = static_cast<size_t>(kSpread * storedPerPath() * settings_.waveSize);
+    return std::max(memory_.verticesPerWave, collected) + settings_.waveSize;
+  }
+
+  // Of a wave per thread where light vertices are connected, and with a photon map of all waves of the iterations under
+  // way.
   size_t vertexBytes(size_t lightPaths) const {
-    const size_t waves = piecesOf(lightPaths, settings_.waveSize);
-    const size_t stores =
-        plan_.pipeline.has(Fold::photonMap) ? lightStores(settings_, area_.size(), waves) : settings_.threads;
-    const size_t room = memory_.verticesPerWave;
-    return stores * (room == 0 ? emptyStore_.bytes() : emptyStore_.bytesFor(room));
+    const auto bytes = [](const LightStore<S>& store, size_t room) {
+      return room == 0 ? store.bytes() : store.bytesFor(room);
+    };
+    size_t sum = 0;
+    if (plan_.lightUse.connected) sum += settings_.threads * bytes(partners_, memory_.partnerVertices);
+    if (plan_.pipeline.has(Fold::photonMap)) {
+      const size_t waves = piecesOf(lightPaths, settings_.waveSize);
+      sum += lightStores(settings_, area_.size(), waves) * bytes(emptyStore_, memory_.verticesPerWave);
+    }
+    return sum;
+  }
+  double storedPerPath() const {
+    return static_cast<double>(pilot_.stored) / static_cast<double>(std::max<size_t>(pilot_.paths, 1));
   }
   size_t photons(size_t lightPaths) const {
-    const double perPath = static_cast<double>(pilot_.stored) / static_cast<double>(std::max<size_t>(pilot_.paths, 1));
-    return static_cast<size_t>(std::llround(perPath * static_cast<double>(lightPaths)));
+    return static_cast<size_t>(std::llround(storedPerPath() * static_cast<double>(lightPaths)));
   }
   size_t photonBytes(size_t lightPaths) const {
     return iterationsAtOnce(settings_, area_.size()) * PhotonMap<S>::bytesFor(photons(lightPaths));
@@ -123,7 +145,8 @@ class Planner {
     const size_t fixed = memory_.use.total();
     const auto needed = [&](size_t paths) { return fixed + vertexBytes(paths) + photonBytes(paths); };
     // One wave of light paths is the least. More light paths never need less memory, so bisection finds the most.
-    size_t most = memory_.lightPaths, fits = std::min<size_t>(settings_.waveSize, most);
+    size_t most = std::min<size_t>(memory_.lightPaths, settings_.mostLightPaths.value_or(memory_.lightPaths)),
+           fits = std::min<size_t>(settings_.waveSize, most);
     if (needed(fits) > budget) refuse(needed(fits));
     while (fits < most) {
       const size_t middle = fits + (most - fits + 1) / 2;
@@ -145,7 +168,7 @@ class Planner {
   const RenderPlan<S>& plan_;
   const RenderSettings& settings_;
   const FilmArea& area_;
-  const LightStore<S> emptyStore_;
+  const LightStore<S> emptyStore_, partners_;
   const LightPilot& pilot_;
   MemoryPlan memory_;
 };

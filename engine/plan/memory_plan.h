@@ -26,9 +26,9 @@ size_t primitiveBytes(const CompiledScene<S>& scene);
 // Of one wave's columns.
 size_t waveBytes(size_t bytesPerPath, size_t waveSize);
 
-// With a photon map: how many light stores a session has for `waves` light waves an iteration. These are as many for
-// each iteration under way; where there is one, some more, into which threads without work trace light paths of the
-// next.
+// With a photon map: how many light stores a session has for `waves` light waves an iteration, besides one per thread
+// where their vertices are connected. These are as many for each iteration under way; where there is one, some more,
+// into which threads without work trace light paths of the next.
 size_t lightStores(const RenderSettings& settings, size_t pixels, size_t waves);
 
 // What the first light paths of iteration 0 left behind (engine/pilot/light_walks.h).

@@ -10,8 +10,8 @@ struct MemoryUse {
   size_t scene = 0;          // primitives, attributes, materials, textures, lights, and the hierarchy
   size_t waves = 0;          // columns of one wave per thread
   size_t film = 0;           // list of the pixels, and their sums
-  size_t splats = 0;         // sums of t = 1, in at most kSplatFilms films
-  size_t lightVertices = 0;  // of a wave per thread, or with a photon map of all waves
+  size_t splats = 0;         // sums of t = 1, in at most kSplatFilms films; of more threads the queue that each sorts
+  size_t lightVertices = 0;  // of a wave per thread where they are connected, and with a photon map of all waves
   size_t photonMap = 0;
   size_t learned = 0;  // what a guide holds at most; pages that it has not reached yet take no memory
   size_t chains = 0;   // state of the Markov chains, and the bootstrap samples from which they start
@@ -25,6 +25,7 @@ struct MemoryPlan {
   MemoryUse use;
   size_t lightPaths = 0;       // N_L: of each iteration
   size_t verticesPerWave = 0;  // room that the light vertices of a wave need
+  size_t partnerVertices = 0;  // the same in a thread's own store, of those that a wave of camera paths is joined with
   size_t photons = 0;          // with a photon map: about how many light vertices an iteration has
   double splatScale = 1;       // of the film's sums (kernels/columns/splat_sums.h)
 };

@@ -1,7 +1,6 @@
 #include "engine/plan/pipeline.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace wavecrest {
 

@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 #include "engine/compile/materials.h"

@@ -18,8 +18,9 @@
 namespace wavecrest {
 
 // Edges of the longest path where none is stated. Light vertices keep their depth in a few bits, chains memory for each
-// vertex; what the limit cuts is counted (StageCounters::cutPaths). A method without either has none to speak of: four
-// numbers of each vertex' random blocks still fit in 32 bits.
+// vertex; what the limit cuts is counted (StageCounters::cutPaths), but mmlt and pathspace leave longer paths out
+// uncounted. A method without either has none to speak of: four numbers of each vertex' random blocks still fit in 32
+// bits.
 constexpr uint32_t kUnlimitedDepth = kMostEdges, kChainDepth = 64, kWalkDepth = 1u << 24;
 
 // Markov chains. Their number is a setting, not a consequence of threads or waves, so that images depend on neither.
@@ -119,6 +120,7 @@ struct RenderSettings {
   // map only: bpt traces one light path with each camera path, lt up to four (balancedWalks).
   std::optional<uint64_t> lightPaths;
   std::optional<uint64_t> memoryBytes;           // budget; lowers N_L where that is what fills the memory
+  std::optional<uint64_t> mostLightPaths;        // with a budget: N_L at most, even if more would fit
   std::optional<uint64_t> iterations;            // stop after this many,
   std::optional<double> seconds;                 // or after this much render time, whichever comes first,
   ClockKind clock = ClockKind::wall;             // as this clock counts it; a session that goes on for another: wall
@@ -179,9 +181,12 @@ inline SamplerKind bestSampler(Method method) {
   return without ? SamplerKind::independent : SamplerKind::sobol;
 }
 
-// The sampler of settings that name none. What trials choose takes Sobol points where they serve it.
+// The sampler of settings that name none. What trials choose takes Sobol points where they serve it. Without a guide
+// gpt is path tracing.
 inline SamplerKind bestSampler(const RenderSettings& settings) {
-  return areTried(settings) ? SamplerKind::sobol : bestSampler(settings.method);
+  if (areTried(settings)) return SamplerKind::sobol;
+  const bool unguided = settings.method == Method::gpt && !mayLearn(settings);
+  return bestSampler(unguided ? Method::pt : settings.method);
 }
 
 // Whether the method's walks end by a roulette that can be chosen. Chains walk as far as their strategies say, or by

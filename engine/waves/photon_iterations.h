@@ -31,7 +31,6 @@ class PhotonIterations {
   // pixels: of the film. cameraPieces: of an iteration's camera walks. The plan must outlive it.
   PhotonIterations(const RenderPlan<S>& plan, const RenderSettings& settings, size_t pixels, size_t cameraPieces);
 
-  size_t lightWaves() const { return lightWaves_; }
   LightStore<S>& storeOf(uint64_t iteration, size_t lightWave) {
     return *stores_[(iteration * lightWaves_ + lightWave) % stores_.size()];
   }

@@ -5,7 +5,6 @@
 #include "engine/plan/memory_plan.h"
 #include "engine/session/stage_rows.h"
 #include "engine/state/state_stream.h"
-#include "engine/tasks/for_each.h"
 #include "engine/waves/wave_session_class.h"
 
 namespace wavecrest {
@@ -64,8 +63,8 @@ RenderStatistics WaveSession<S>::statistics() const {
     out.counters += worker->counters;
     out.bytesPerPath = worker->wave.bytesPerPath();
     out.memory.waves += waveBytes(out.bytesPerPath, settings_.waveSize);
-    if (plan_.pipeline.lightPass() && !plan_.pipeline.has(Fold::photonMap))
-      out.memory.lightVertices += worker->light.bytes();
+    if (worker->splats) out.memory.splats += worker->splats->bytes();
+    if (plan_.pipeline.lightPass() && plan_.lightUse.connected) out.memory.lightVertices += worker->light.bytes();
     addTallies(worker->lightTallies, 0, out.stages);
     addTallies(worker->cameraTallies, cameraRow, out.stages);
   }

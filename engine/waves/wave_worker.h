@@ -1,4 +1,5 @@
-// What one worker thread of a session keeps from wave to wave; nothing is allocated while waves run.
+// What one worker thread of a session keeps from wave to wave. Nothing is allocated while waves run, unless they have
+// more light vertices than the memory plan foresees.
 #pragma once
 
 #include <optional>
@@ -14,7 +15,9 @@ namespace wavecrest {
 template <class S>
 struct WaveWorker {
   Wave<S> wave;
-  LightStore<S> light;  // of the wave under way, where light vertices do not outlive it
+  // Of the wave under way: of its light walk, or with a photon map what its camera paths are connected with, where no
+  // store has just that (WaveSession::partnersOf).
+  LightStore<S> light;
   StageCounters counters;
   std::vector<StageTally> lightTallies, cameraTallies;
   StageTally photonTally;  // of building the photon map
@@ -27,7 +30,7 @@ struct WaveWorker {
         cameraTallies(plan.pipeline.cameraPass().stageCount()) {
     if (plan.pipeline.lightPass()) {
       lightTallies.resize(plan.pipeline.lightPass()->stageCount());
-      if (!plan.pipeline.has(Fold::photonMap)) light.reserve(plan.memory.verticesPerWave);
+      light.reserve(plan.memory.partnerVertices);
     }
     if (plan.pipeline.splats()) splats.emplace(film.splats(), plan.stages->addSplats, waveSize);
   }

@@ -8,6 +8,7 @@
 // occludePassing - in: ShadowRays [n]. out: as occlude. A contribution is multiplied by the colours of all passages on
 // its way, and its weight takes their probability: what other strategies have in the weight's denominator are walks
 // along the same edge, which must pass as well.
+#include <cmath>
 #include <utility>
 
 #include "kernels/bsdf/passage_lanes.h"
@@ -57,6 +58,15 @@ WAVECREST_NOINLINE MetSurface<P> surfaceMet(const SceneView<typename P::Storage>
   met.normal = surface.normal;
   met.offset = surface.offset;
   return met;
+}
+
+// Whether each walk meets its surface within the camera's far clip. What lies beyond is not seen, so nothing passes it:
+// the walk stops there, and arrive counts it as a miss. Parallel rays begin where the clip is measured from.
+template <class P>
+WAVECREST_INLINE Mask withinFarClip(const CameraView& camera, const MetSurface<P>& met) {
+  using Real = typename P::Real;
+  const Vec3<Real> fromCamera = met.position - broadcast<Real>(camera.origin);
+  return dot(fromCamera, broadcast<Real>(camera.axis)) <= Real(camera.farClip);
 }
 
 // Rays that go on, to wave.passing from `out` on; where they end.
@@ -211,13 +221,15 @@ template <class P>
 void extendPassing(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   const auto& scene = *context.scene;
   auto& passing = wave.passing;
+  const bool clipped = context.walk == Walk::camera && context.depth == 1 && std::isfinite(scene.camera.farClip);
   scene.closestHits(context, wave);
   // Which rays pass the surface that they met.
   size_t count = 0;
   for (size_t i = 0; i < wave.rays.size; i += kLanes) {
     const Mask active = firstLanes(wave.rays.size - i);
-    const auto met = surfaceMet<P>(scene, wave.rays, wave.hits, i, active);
+    auto met = surfaceMet<P>(scene, wave.rays, wave.hits, i, active);
     if (none(met.passes)) continue;
+    if (clipped) met.passes = met.passes & withinFarClip(scene.camera, met);
     const UInt lane = select(met.passes, load(wave.paths.lane, i), UInt(0u));
     const auto direction = loadVec3(wave.rays.directionX, wave.rays.directionY, wave.rays.directionZ, i);
     count =
@@ -231,10 +243,12 @@ void extendPassing(const StageContext<typename P::Storage>& context, Wave<typena
       const Mask active = firstLanes(count - i);
       const UInt index = load(passing.marks.index, i);
       const Float number = load(passing.marks.number, i);
-      const auto met = surfaceMet<P>(scene, passing.rays, passing.hits, i, active);
+      auto met = surfaceMet<P>(scene, passing.rays, passing.hits, i, active);
       keepHits<P>(scene, active, index, wave, i);
+      if (none(met.passes)) continue;
+      if (clipped) met.passes = met.passes & withinFarClip(scene.camera, met);
       const auto direction = loadVec3(passing.rays.directionX, passing.rays.directionY, passing.rays.directionZ, i);
-      if (any(met.passes)) out = passOn(met, direction, index, number, wave, out);
+      out = passOn(met, direction, index, number, wave, out);
     }
     count = out;
   }

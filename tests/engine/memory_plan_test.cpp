@@ -150,10 +150,43 @@ TEST(MemoryPlan, growsWithThreads) {
   settings.threads = 3;
   const MemoryUse three = planMemory(scene, settings).use;
   EXPECT_LT(three.waves, one.waves) << "of a small film each thread's waves are smaller";
-  EXPECT_EQ(three.splats, kSplatFilms * one.splats) << "a bounded number of films, whatever the number of threads";
-  settings.threads = 30;
-  EXPECT_EQ(planMemory(scene, settings).use.splats, three.splats);
   EXPECT_EQ(three.film, one.film);
+}
+
+// A bounded number of films of splats, whatever the number of threads. Threads that share them sort a queue each.
+TEST(MemoryPlan, hasAQueueOfSplatsForEachOfManyThreads) {
+  const Scene scene = sceneFile("cornell-diffuse", 40, 30);
+  RenderSettings settings = plannedSettings(Method::lt);
+  const size_t film = planMemory(scene, settings).use.splats;
+  for (const uint32_t threads : {2u, 3u, 30u}) {
+    settings.threads = threads;
+    const size_t wave = withPieces(settings, scene.film, size_t{40} * 30).waveSize;
+    const size_t queues = threads > kSplatFilms ? threads * Splats<float>().bytes(wave) : 0;
+    EXPECT_EQ(planMemory(scene, settings).use.splats, kSplatFilms * film + queues) << threads;
+  }
+  // A session has the queues of those threads that had work.
+  for (const Method method : {Method::lt, Method::mlt}) {
+    RenderSettings own = plannedSettings(method);
+    own.threads = 3;
+    own.metropolis.chains = 256;
+    own.metropolis.bootstrapSamples = 8192;
+    EXPECT_GT(statisticsOf(scene, own, 1).memory.splats, kSplatFilms * film) << toString(method);
+  }
+}
+
+// Camera paths of vcm whose light paths are in no store of their own are connected with those that their thread
+// collects: as many as a wave has, though the iteration has fewer.
+TEST(MemoryPlan, hasRoomForLightVerticesThatAreCollected) {
+  const Scene scene = sceneFile("cornell-mirror", 160, 120);
+  RenderSettings settings = plannedSettings(Method::vcm);
+  settings.lightPaths = 100;
+  const MemoryUse plan = planMemory(scene, settings).use;
+  EXPECT_GT(plan.lightVertices, settings.waveSize * sizeof(VertexRow<float>));
+  const MemoryUse held = statisticsOf(scene, settings, 3).memory;
+  expectNear(plan.lightVertices, held.lightVertices);
+  // Methods that do not connect collect nothing.
+  settings.method = Method::ppm;
+  EXPECT_LT(5 * planMemory(scene, settings).use.lightVertices, plan.lightVertices);
 }
 
 // ---- budget ---------------------------------------------------------------------------------------------------------

@@ -51,6 +51,32 @@ TEST(CameraClips, hideWhatLiesOutside) {
   }
 }
 
+// The same squares as boundaries between equal indices, which colour what is seen through them.
+Scene twoPanes(double farClip) {
+  Scene scene = twoSquares(0.5, farClip);
+  Material pane;
+  pane.kind = Dielectric{.intIor = 1.3, .extIor = 1.3, .specularTransmittance = {{0.5, 0.5, 0.5}}};
+  scene.materials.push_back(pane);
+  for (Shape& shape : scene.shapes) shape.material = static_cast<uint32_t>(scene.materials.size() - 1);
+  return scene;
+}
+
+TEST(CameraClips, hideWhatLightPasses) {
+  for (const Method method : {Method::pt, Method::gpt, Method::lt, Method::bpt, Method::vcm, Method::mlt}) {
+    const std::string name(toString(method));
+    EXPECT_NEAR(meanOf(twoPanes(100), method, 1), 0.25, 1e-5) << name << ", both are seen";
+    EXPECT_NEAR(meanOf(twoPanes(2.9), method, 1), 0.5, 1e-5) << name << ", the second is hidden";
+    EXPECT_NEAR(meanOf(twoPanes(0.9), method, 1), 1, 1e-5) << name << ", both are hidden";
+  }
+  for (const Sensor::Kind kind : {Sensor::Kind::orthographic, Sensor::Kind::thinlens}) {
+    Scene scene = twoPanes(2.9);
+    scene.sensor.kind = kind;
+    scene.sensor.apertureRadius = 0.1;
+    scene.sensor.focusDistance = 1;
+    EXPECT_NEAR(meanOf(scene, Method::pt, 1), 0.5, 1e-5);
+  }
+}
+
 // Planes, not spheres: a square at the corner of the picture is farther away, and clipped where its middle is.
 TEST(CameraClips, arePlanes) {
   EXPECT_EQ(meanOf(twoSquares(0.99, 1.01), Method::pt, 1), 0);

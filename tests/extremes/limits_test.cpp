@@ -48,6 +48,15 @@ TEST(PathLimits, whatTheyCutIsCounted) {
   EXPECT_NEAR(carried / std::pow(kAlbedo, kEdges - 1), 1, 0.06);
 }
 
+// Where no limit is stated, chains have memory for kChainDepth edges.
+TEST(PathLimits, whatChainsCutIsCounted) {
+  RenderSettings settings = settingsWithin(Method::mlt);
+  settings.metropolis.variant = MetropolisVariant::pssmlt;
+  settings.metropolis.chains = 256;
+  settings.metropolis.bootstrapSamples = 1024;
+  EXPECT_GT(rendered(shiningRoom(0.999), settings, 1)->statistics().counters.cutPaths, 0u);
+}
+
 // Its radius is that of an iteration, and so are its weights.
 TEST(PhotonMapIterations, areFinishedWhereTimeRunsOut) {
   for (const Method method : {Method::vcm, Method::ppm}) {
