@@ -1,13 +1,10 @@
 #include "cli/failure.h"
 
-#include <fmt/format.h>
-
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "bench/against/child_render.h"
 #include "bench/checkpoint/checkpoint.h"
@@ -42,10 +39,9 @@ Failure failureOf(const std::exception_ptr& thrown) {
   } catch (const InputError& input) {
     return error(kExitInput, input.what());
   } catch (const std::filesystem::filesystem_error& file) {
-    return error(kExitInput, fmt::format("{}: {}; expected a file or folder that can be reached", file.path1().string(),
-                                         file.code().message()));
+    return error(kExitInput, textOf(file));
   } catch (const nlohmann::json::exception&) {
-    return error(kExitInput, "JSON of an input is not as wavecrest writes it; expected it unchanged");
+    return error(kExitInput, kForeignJson);
   } catch (const ChildStopped& child) {
     return error(kExitInterrupted, child.what());
   } catch (const RanksError& ranks) {

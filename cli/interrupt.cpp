@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cerrno>
 #include <ctime>
 
 #include "cli/commands.h"
@@ -98,7 +97,8 @@ void InterruptGuard::watch(Session* session) {
   if (session != nullptr && isWanted()) session->interrupt();
 }
 
-bool InterruptGuard::interrupted() const { return firstRequest.load() != 0 || toldToStop.load(); }
+bool InterruptGuard::interrupted() const { return signalled() || toldToStop.load(); }
+bool InterruptGuard::signalled() const { return firstRequest.load() != 0; }
 void InterruptGuard::stop() { pauseFor(toldToStop); }
 bool InterruptGuard::takeSaveRequest() { return saveWanted.exchange(false); }
 void InterruptGuard::requestPause() { pauseFor(pauseWanted); }

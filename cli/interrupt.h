@@ -30,6 +30,8 @@ class InterruptGuard {
   void watch(Session* session);
   // By a signal, or by stop().
   bool interrupted() const;
+  // By a signal to this process.
+  bool signalled() const;
   // Does what a first signal does, from any thread: another process of the same render has got one. A signal that comes
   // here later is then the first.
   void stop();

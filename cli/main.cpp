@@ -88,7 +88,7 @@ std::string commandOf(const std::vector<std::string>& arguments) {
 // them, and all would write the same files.
 void refuseLaunched(const std::vector<std::string>& arguments) {
   const std::optional<Launch> launch = launchOfThisProcess();
-  constexpr std::array<std::string_view, 5> kAny{"render", "help", "scenes", "describe", "inspect"};
+  constexpr std::array<std::string_view, 4> kAny{"render", "help", "scenes", "describe"};
   const std::string command = commandOf(arguments);
   if (!launch || command.empty() || std::find(kAny.begin(), kAny.end(), command) != kAny.end()) return;
   throw UsageError(fmt::format(

@@ -146,7 +146,7 @@ class RenderRun {
   Ending render();
   bool goesOn();
   int end(Ending ending);
-  int endAlone(Ending ending, const RanksError& error);
+  int endAlone(const RanksError& error);
   int write(Ending ending, const Rendered& rendered);
   int endWithoutImage(Ending ending, const RenderStatistics& statistics) const;
 
@@ -166,6 +166,7 @@ class RenderRun {
   std::optional<LiveRender> live_;
   std::optional<RenderOutputs> outputs_;
   unsigned firstSnapshot_ = 0;
+  std::optional<bool> written_;  // once the outputs of the whole render were tried: whether all are there
 };
 
 // Refuses what --dry-run, which shows a plan as text and no image, would ignore. Throws UsageError.
@@ -256,17 +257,16 @@ int RenderRun::runTogether() {
   ranks_.together([this] { build(); });
   if (ranks_.several()) firstSnapshot_ = ranks_.agree(renderIdentity(scene_, settings_, *session_), firstSnapshot_);
   // Renders, with a checkpoint every now and then.
-  Ending ending = Ending::complete;
   try {
     const RenderRanks::Watch watch(ranks_, *guard_, *session_);
     std::optional<CheckpointTimer> timer;
     if (!options_.checkpoint.file.empty()) timer.emplace(*guard_, checkpointing_->seconds());
-    ending = render();
+    const Ending ending = render();
     timer.reset();
     if (until_) noteLine(kind_, {{"until", outputs_->until()}}, UntilGoal::describe(outputs_->until()));
     return end(ending);
   } catch (const RanksError& error) {
-    return endAlone(guard_->interrupted() ? Ending::stopped : Ending::complete, error);
+    return endAlone(error);
   }
 }
 
@@ -345,14 +345,20 @@ int RenderRun::end(Ending ending) {
   return ranks_.leave(exitCode);
 }
 
-// Where a process is lost, each of the others keeps what it has.
-int RenderRun::endAlone(Ending ending, const RanksError& error) {
+// Where a process is lost, each of the others keeps what it has, unless the outputs of all are there. Only the first
+// process knows of those.
+int RenderRun::endAlone(const RanksError& error) {
   guard_->watch(nullptr);
-  const std::string file = options_.checkpoint.file.empty() ? ranks_.emergencyFile() : options_.checkpoint.file;
-  outputs_->writeCheckpoint(*session_, file);
-  tell("wavecrest: error: {}; no image was written; {} keeps what this one has rendered, for `wavecrest merge`",
-       error.what(), file);
-  return ending == Ending::stopped ? kExitInterrupted : kExitFailure;
+  if (written_.value_or(false)) {
+    tell("wavecrest: error: {}, after all files were written", error.what());
+  } else {
+    const std::string file = options_.checkpoint.file.empty() ? ranks_.emergencyFile() : options_.checkpoint.file;
+    const bool kept = outputs_->writeCheckpoint(*session_, file);
+    tell("wavecrest: error: {}; {}{}", error.what(),
+         ranks_.first() && !written_.has_value() ? "no image was written; " : "",
+         kept ? file + " keeps what this one has rendered, for `wavecrest merge`" : "this one could save nothing more");
+  }
+  return guard_->signalled() ? kExitInterrupted : kExitFailure;
 }
 
 // The files of the whole render, images from the first whole one on. A part without an image of its own needs no whole
@@ -368,6 +374,7 @@ int RenderRun::write(Ending ending, const Rendered& rendered) {
   live_->look(true);
   warnOfLosses(options_, kind_, settings_, statistics);
   outputs_->write(rendered);
+  written_ = !outputs_->failed();
   if (!options_.outputs.empty() && !outputs_->failed()) live_->showFile(options_.outputs.front());
   showSummary(options_, settings_, kind_, statistics);
   return ending == Ending::stopped ? kExitInterrupted : kExitDone;
@@ -404,7 +411,10 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
   const Command command = program.add(
       "render", "render a scene by one method; mpirun and srun have it share the work of several processes");
   addRenderOptions(command, *options);
-  command.run([options, &exitCode] {
+  command.run([options, command, &exitCode] {
+    // A variable is a default, which chains that ask no sampler ignore.
+    const bool asksNoSampler = options->method == "mlt" && (options->mlt == "pssmlt" || options->noDirectPass);
+    if (asksNoSampler && command.fromVariable("--sampler")) options->sampler = "auto";
     // A part is a checkpoint; it has an image only where one is asked for.
     if (options->outputs.empty() && options->part.empty()) options->outputs = {stemOf(options->scene) + ".exr"};
     exitCode = RenderRun(*options).run();

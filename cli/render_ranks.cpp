@@ -9,6 +9,7 @@
 
 #include "bench/checkpoint/checkpoint.h"
 #include "cli/commands.h"
+#include "cli/file_check.h"
 #include "cli/messages.h"
 
 namespace wavecrest {
@@ -55,6 +56,8 @@ std::string RenderRanks::fileOfShare(const std::string& file) const {
 
 void RenderRanks::adapt(RenderOptions& options) {
   if (!several()) return;
+  // Before the name gets a number for each process.
+  if (options.checkpoint.file == kStandardStream) throw UsageError("--checkpoint -: expected a file");
   // What would show or decide by the share of one process alone.
   const std::pair<const char*, bool> alone[] = {{"--part", !options.part.empty()},
                                                 {"--view", !options.live.view.empty()},
@@ -241,9 +244,10 @@ int RenderRanks::leave(int exitCode) {
     const int code = std::stoi(one);
     if (code != kExitDone && (all == kExitDone || all == kExitInterrupted)) all = code;
   }
-  ranks_->finish();
+  // Before MPI ends: with a launcher that is ending its processes, that lasts until the process is killed.
   std::error_code ignored;
   if (shareSaved_ && (all == kExitDone || all == kExitInterrupted)) fs::remove(emergencyFile_, ignored);
+  ranks_->finish();
   return all;
 }
 

@@ -12,7 +12,6 @@
 #include "bench/claims/judge_claims.h"
 #include "bench/json_text.h"
 #include "bench/report/picture_crop.h"
-#include "bench/report/results_folder.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
 #include "engine/load/input_file.h"

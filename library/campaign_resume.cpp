@@ -13,6 +13,7 @@
 #include "bench/results/within_folder.h"
 #include "library/campaign_options.h"
 #include "library/errors.h"
+#include "library/option_values.h"
 
 namespace wavecrest {
 namespace {
@@ -98,7 +99,7 @@ void keepFormerChoices(CampaignOptions& options, const std::map<std::string, std
     if (used && now.at(key) != former) options.defining[option] = {former};
   };
   keep("--roulette", "roulette", "throughput", anyRow(hasRouletteChoice));
-  keep("--radius", "radius", "0.001", anyRow([](Method method) { return strategiesOf(method).merge; }));
+  keep("--radius", "radius", "0.001", anyRow(mergesPaths));
   keep("--sampler", "sampler", "independent", true);
   keep("--merge-vertices", "merge_vertices", "all", anyRow(choosesMergeVertices));
 }

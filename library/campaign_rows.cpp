@@ -6,7 +6,6 @@
 #include <array>
 #include <utility>
 
-#include "kernels/sampling/sampler.h"
 #include "library/errors.h"
 #include "library/option_values.h"
 

@@ -1,5 +1,11 @@
 #include "wavecrest/error.h"
 
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <new>
+#include <nlohmann/json.hpp>
+
 #include "bench/campaign/file_lock.h"
 #include "bench/campaign/render_reference.h"
 #include "bench/campaign/scene_reference.h"
@@ -49,6 +55,11 @@ std::string textOf(const MissingFileError& error) {
          didYouMean(error.file.string(), known);
 }
 
+std::string textOf(const std::filesystem::filesystem_error& error) {
+  return fmt::format("{}: {}; expected a file or folder that can be reached", error.path1().string(),
+                     error.code().message());
+}
+
 api::Error currentError() {
   // Rethrows the exception being handled, to tell its type. Derived types stand before their bases: MissingFileError
   // before LoadError.
@@ -80,6 +91,10 @@ api::Error currentError() {
     return inputError(error);
   } catch (const ResultsFileError& error) {
     return inputError(error);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return {api::ErrorKind::input, textOf(error), error.path1().string()};
+  } catch (const nlohmann::json::exception&) {
+    return {api::ErrorKind::input, kForeignJson};
   } catch (const std::bad_alloc&) {
     // What is left are faults of the library or the machine.
     return {api::ErrorKind::fault, "out of memory"};

@@ -45,8 +45,8 @@ ordered_json inspectionJson(const Scene& scene, const SceneInspection& facts) {
   // Path classes: the verdict of each method.
   for (const PathClass& pathClass : facts.paths.classes) {
     ordered_json verdicts;
-    for (const Method method : facts.paths.methods) {
-      verdicts[std::string(toString(method))] = enumeratorName(kVerdictNames, facts.paths.verdict(pathClass, method));
+    for (const MethodEntry& entry : kMethods) {
+      verdicts[std::string(entry.name)] = enumeratorName(kVerdictNames, facts.paths.verdict(pathClass, entry.method));
     }
     classes.push_back({{"class", pathClass.signature}, {"description", pathClass.description}, {"methods", verdicts}});
   }

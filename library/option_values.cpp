@@ -103,28 +103,29 @@ Isa parseIsaOption(const std::string& word) {
   return isa;
 }
 
-std::array<uint32_t, 2> parsePart(const std::string& option, const std::string& text) {
-  std::array<uint32_t, 2> part{};
+std::optional<std::array<uint32_t, 2>> parsePair(std::string_view text, char between) {
+  std::array<uint32_t, 2> pair{};
   const char* const end = text.data() + text.size();
-  const auto [slash, indexError] = std::from_chars(text.data(), end, part[0]);
-  if (indexError == std::errc() && slash != end && *slash == '/') {
-    const auto [rest, countError] = std::from_chars(slash + 1, end, part[1]);
-    const bool valid = part[0] >= 1 && part[0] <= part[1] && part[1] <= kMostShares;
-    if (countError == std::errc() && rest == end && valid) return part;
+  const auto [middle, firstError] = std::from_chars(text.data(), end, pair[0]);
+  if (firstError != std::errc() || middle == end || *middle != between) return std::nullopt;
+  const auto [rest, secondError] = std::from_chars(middle + 1, end, pair[1]);
+  if (secondError != std::errc() || rest != end) return std::nullopt;
+  return pair;
+}
+
+std::array<uint32_t, 2> parsePart(const std::string& option, const std::string& text) {
+  if (const auto part = parsePair(text, '/')) {
+    const auto [index, count] = *part;
+    if (index >= 1 && index <= count && count <= kMostShares) return *part;
   }
   throw UsageError(
       fmt::format("{} '{}': no part; expected I/N with I from 1 to N, and N up to {}", option, text, kMostShares));
 }
 
 std::array<uint32_t, 2> parseSize(const std::string& option, const std::string& text) {
-  std::array<uint32_t, 2> size{};
-  const char* const end = text.data() + text.size();
-  // Width, "x", height, and nothing after them.
-  const auto [x, widthError] = std::from_chars(text.data(), end, size[0]);
-  if (widthError == std::errc() && x != end && *x == 'x') {
-    const auto [rest, heightError] = std::from_chars(x + 1, end, size[1]);
-    const auto valid = [](uint32_t n) { return n >= 1 && n <= 65535; };
-    if (heightError == std::errc() && rest == end && valid(size[0]) && valid(size[1])) return size;
+  const auto valid = [](uint32_t n) { return n >= 1 && n <= 65535; };
+  if (const auto size = parsePair(text, 'x')) {
+    if (std::ranges::all_of(*size, valid)) return *size;
   }
   throw UsageError(fmt::format("{} '{}': no size; expected WIDTHxHEIGHT, each 1 to 65535", option, text));
 }

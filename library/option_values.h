@@ -41,6 +41,9 @@ std::vector<std::string_view> isaNames();
 // "auto" for the best there is, or the name of one that this machine and build have; UsageError otherwise.
 Isa parseIsaOption(const std::string& word);
 
+// Two whole numbers with this character between them, and nothing else; nothing for any other text.
+std::optional<std::array<uint32_t, 2>> parsePair(std::string_view text, char between);
+
 // "2/8": which part, from 1 on, of how many; UsageError otherwise.
 constexpr uint32_t kMostShares = 100000;
 std::array<uint32_t, 2> parsePart(const std::string& option, const std::string& text);

@@ -11,7 +11,6 @@
 #include "bench/json_text.h"
 #include "engine/scene/scene_error.h"
 #include "engine/session/session.h"
-#include "library/image_conversion.h"
 #include "library/render_settings.h"
 #include "library/scene_data.h"
 #include "library/translate.h"

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "engine/state/state_stream.h"
 
@@ -28,17 +27,6 @@ void addSavedChains(ChainStatistics& sum, StateReader& in) {
   sum.counters += in.value<ChainCounters>();
   const auto stuck = in.list<StuckChain>();
   sum.stuck.insert(sum.stuck.end(), stuck.begin(), stuck.end());
-}
-
-// about: how many bytes there will be, behind those of the head.
-template <class Save>
-std::vector<unsigned char> bytesOf(size_t head, size_t about, Save save) {
-  std::vector<unsigned char> bytes(head);
-  bytes.reserve(head + about);
-  StateWriter out([&](std::span<const unsigned char> block) { bytes.insert(bytes.end(), block.begin(), block.end()); });
-  save(out);
-  out.flush();
-  return bytes;
 }
 
 // Bytes of a film's state, or a little more.
@@ -76,13 +64,14 @@ ProcessRecord recordOf(uint32_t rank, uint32_t threads, const RenderStatistics& 
 
 std::vector<unsigned char> contributionOf(const Session& session, const ProcessRecord& record, size_t head) {
   static_assert(sizeof(ProcessRecord) == 2 * sizeof(uint32_t) + 8 * sizeof(uint64_t) + 64, "padding would be sent");
-  return bytesOf(head, stateBytes(session.film()), [&](StateWriter& out) {
+  const auto save = [&](StateWriter& out) {
     const RenderStatistics statistics = session.statistics();
     out.list(std::vector<ProcessRecord>{record});
     WorkDone::of(statistics).save(out);
     saveChains(out, statistics.chains.value_or(ChainStatistics{}));
     session.film().save(out);
-  });
+  };
+  return savedBytes(save, head, stateBytes(session.film()));
 }
 
 void FilmSum::sumUp(const std::vector<Bytes>& contributions) {
@@ -115,12 +104,13 @@ void FilmSum::add(Bytes contribution, bool first) {
 }
 
 std::vector<unsigned char> FilmSum::contribution(size_t head) const {
-  return bytesOf(head, stateBytes(*film_), [&](StateWriter& out) {
+  const auto save = [&](StateWriter& out) {
     out.list(processes_);
     work_.save(out);
     saveChains(out, chains_);
     film_->save(out);
-  });
+  };
+  return savedBytes(save, head, stateBytes(*film_));
 }
 
 RenderStatistics FilmSum::statistics(RenderStatistics own) const {

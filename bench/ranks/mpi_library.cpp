@@ -1,7 +1,6 @@
 #include "bench/ranks/mpi_library.h"
 
 #include <dlfcn.h>
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <string>

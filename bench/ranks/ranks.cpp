@@ -30,11 +30,9 @@ double secondsBetween(Clock::time_point begin, Clock::time_point end) {
 
 // Texts as bytes, each with its length.
 std::vector<unsigned char> joined(const std::vector<std::string>& texts) {
-  std::vector<unsigned char> bytes;
-  StateWriter out([&](std::span<const unsigned char> block) { bytes.insert(bytes.end(), block.begin(), block.end()); });
-  for (const std::string& text : texts) out.list(std::vector<char>(text.begin(), text.end()));
-  out.flush();
-  return bytes;
+  return savedBytes([&](StateWriter& out) {
+    for (const std::string& text : texts) out.list(std::vector<char>(text.begin(), text.end()));
+  });
 }
 
 std::vector<std::string> separated(std::span<const unsigned char> bytes) {

@@ -44,7 +44,13 @@ void addBoolean(pugi::xml_node parent, const char* name, bool value) {
   addValue(parent, "boolean", name, value ? "true" : "false");
 }
 void addString(pugi::xml_node parent, const char* name, const std::string& value) {
-  addValue(parent, "string", name, value);
+  // The loader reads `\$` as a dollar, and a dollar alone as the begin of a variable's name.
+  std::string text;
+  for (const char c : value) {
+    if (c == '$') text += '\\';
+    text += c;
+  }
+  addValue(parent, "string", name, text);
 }
 void addRgb(pugi::xml_node parent, const char* name, const Rgb& value) {
   addValue(parent, "rgb", name, fmt::format("{}", fmt::join(value, ", ")));

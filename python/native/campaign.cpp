@@ -139,7 +139,6 @@ void addCampaign(nb::module_& module) {
              nb::arg("say"));
   module.def("read_results", &readResults, nb::arg("path"),
              nb::sig("def read_results(path: str) -> dict[str, typing.Any]"));
-  module.def("write_report", &api::writeReport, nb::arg("folder"), nb::call_guard<nb::gil_scoped_release>());
 }
 
 }  // namespace wavecrest::python

@@ -109,13 +109,9 @@ void addRender(nb::module_& module) {
       .def("run", &run, "To the end of the options. True if Ctrl-C ended it.")
       .def("run_until", &runUntil, nb::arg("seconds") = nb::none(), nb::arg("iterations") = nb::none(),
            "To so many seconds or iterations since the beginning. True if Ctrl-C ended it.")
-      .def("stop", &Render::stop)
-      .def_prop_ro("stopped", &Render::stopped)
-      .def_prop_ro("seconds", &Render::seconds)
       .def_prop_ro("iterations", &Render::iterations)
       .def("image", &image, nb::sig("def image(self) -> numpy.typing.NDArray[numpy.float32]"))
-      .def("stats", &Render::stats)
-      .def("write", &Render::write, nb::arg("file"), nb::call_guard<nb::gil_scoped_release>());
+      .def("stats", &Render::stats);
 }
 
 }  // namespace wavecrest::python

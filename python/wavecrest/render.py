@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import pathlib
 import warnings
@@ -38,13 +39,16 @@ def _option_value(name: str, value: Any) -> Any:
 
 def _options(method: str, settings: Mapping[str, Any]) -> _native.RenderOptions:
     options = _native.RenderOptions()
-    options.method = method
-    for name, value in settings.items():
+    for name, value in {"method": method, **settings}.items():
         if name.startswith("_") or not hasattr(options, name):
             known = ", ".join(name for name in dir(options) if not name.startswith("_"))
             raise TypeError(f"unknown option {name!r}; expected some of {known}")
-        if value is not None:
+        if value is None:
+            continue
+        try:
             setattr(options, name, _option_value(name, value))
+        except TypeError:
+            raise UsageError(f"{name} {value!r}: expected a value of its type and range") from None
     return options
 
 
@@ -157,8 +161,10 @@ class Scene:
             if options.get(name) is not None:
                 raise UsageError(f"snapshots: {name} is for render(); expected times or iterations alone")
         due: Sequence[float] = times if times is not None else iterations if iterations is not None else ()
-        if any(b <= a for a, b in zip(due, due[1:])) or any(not at > 0 for at in due):
-            raise UsageError(f"snapshots at {list(due)}: expected positive numbers in growing order")
+        if any(b <= a for a, b in zip(due, due[1:])) or any(not 0 < at < math.inf for at in due):
+            raise UsageError(f"snapshots at {list(due)}: expected positive, finite numbers in growing order")
+        if iterations is not None and any(int(at) != at for at in due):
+            raise UsageError(f"snapshots at {list(due)}: expected whole numbers of iterations")
         native = self._begin(method, {"seed": seed, "threads": threads, **options})
         return _snapshots(native, due, times is not None)
 

@@ -38,6 +38,10 @@ class Convert(CommandTest):
         self.assertEqual(len(meshes), int(re.search(r"(\d+) files", result.stdout)[1]))
         self.assertTrue(all(mesh.suffix == ".ply" for mesh in meshes))
 
+    def test_a_dollar_in_its_name_is_no_variable(self):
+        self.run_wavecrest("convert", "cornell-glossy", "--size", "32x24", "-o", self.path("a$b.xml"))
+        self.assertEqual(self.scene_hash(self.path("a$b.xml")), self.scene_hash("cornell-glossy"))
+
     def test_its_comment_has_the_hash(self):
         self.run_wavecrest("convert", "cornell-glossy", "--size", "32x24", "-o", self.path("box.xml"))
         comment = re.search(r"<!-- cornell-glossy, .* scene_hash ([0-9a-f]{16}) -->", (self.folder / "box.xml").read_text())

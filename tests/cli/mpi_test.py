@@ -187,7 +187,16 @@ class Signals(MpiTest):
             merged = read_json(self.path("merged.json"))
             self.assertEqual(merged["camera_paths"], stats["camera_paths"])
             self.assert_equal_but_for_rounding(self.image("merged.pfm"), self.image(f"{method}.pfm"), method)
-            self.assertEqual(list(self.folder.glob("*.part*")), [])
+
+    def test_shares_go_once_the_image_is_there(self):
+        for receiver in ("mpirun", "process"):
+            more = [*ENDLESS, "--snapshot-every", "20ms", "-o", f"{receiver}.exr"]
+            mpirun, ranks = self.start_mpirun(2, *self.arguments("lt", *more))
+            self.wait_for_file(f"{receiver}.0002.exr")
+            os.kill(mpirun.pid if receiver == "mpirun" else ranks[1], signal.SIGTERM)
+            mpirun.communicate(timeout=TIMEOUT_SECONDS)
+            self.assertTrue((self.folder / f"{receiver}.exr").exists(), receiver)
+            self.assertEqual(list(self.folder.glob("*.part-*")), [], receiver)
 
     def test_what_was_ended_goes_on(self):
         spp = 6000
@@ -222,6 +231,19 @@ class Signals(MpiTest):
             self.assertEqual(read_json(self.path("rest.json"))["parts"], 2)
             self.assertGreater(sum(self.image("rest.pfm")[2]), 0)
 
+    def test_a_share_that_cannot_be_saved_is_not_said_to_be_kept(self):
+        (self.folder / "image.part-1-of-2").mkdir()  # where no file can be written
+        more = [*ENDLESS, "--snapshot-every", "20ms", "-o", "image.exr"]
+        mpirun, ranks = self.start_mpirun(2, *self.arguments("lt", *more), launcher=())
+        self.wait_for_file("image.0002.exr")
+        # mpirun ends no process for one that stands still. It is lost after ten seconds of silence.
+        os.kill(ranks[1], signal.SIGSTOP)
+        os.kill(ranks[0], signal.SIGTERM)
+        _, error = mpirun.communicate(timeout=TIMEOUT_SECONDS)
+        line = "process 2 of 2 is lost; no image was written; this one could save nothing more"
+        self.assertIn(f"wavecrest: error: {line}", self.said(error))
+        self.assertFalse((self.folder / "image.exr").exists())
+
     def test_shares_that_an_earlier_render_left_stay(self):
         self.write("image.part-1-of-2", "a share")
         for more in ([], ["--dry-run"]):
@@ -251,12 +273,16 @@ class Refused(MpiTest):
             (["--part", "1/2", "--checkpoint", "c"], "--part: not in one of 2 processes"),
             (["--view", "0"], "--view: not in one of 2 processes"),
             (["--tev"], "--tev: not in one of 2 processes"),
+            (["--checkpoint", "-"], "--checkpoint -: expected a file"),
             (["--until-relative-error", "0.1"], "--until-relative-error: not in one of 2 processes"),
         ):
             self.assert_one_error(self.mpirun(2, *self.arguments("pt", *more), expect=USAGE), said)
         result = self.mpirun(2, "render", "cornell-diffuse", "-m", "mlt", "--chains", "1", expect=USAGE)
         self.assert_one_error(result, "--chains 1: fewer than the 2 processes")
-        for command in (["converge", "cornell-diffuse", "--out", "out"], ["bench"], ["merge", "a", "-o", "b.exr"]):
+        for command in (
+            ["converge", "cornell-diffuse", "--out", "out"], ["bench"], ["merge", "a", "-o", "b.exr"],
+            ["inspect", "cornell-diffuse", "--guide", "4,4", "-o", "guide.exr"],
+        ):  # fmt: skip
             result = self.mpirun(2, *command, expect=USAGE)
             self.assert_one_error(result, f"{command[0]}: mpirun has started 2 processes")
         self.assertEqual(list(self.folder.iterdir()), [])

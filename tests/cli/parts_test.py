@@ -207,6 +207,7 @@ class References(PartsTest):
         self.merge(*files, "--reference", "references/cornell-diffuse.exr", "--stats", "merged.json")
         attributes = read_exr_header(self.path("references/cornell-diffuse.exr"))
         self.assertEqual(attributes["wavecrest:iterations"], "500")
+        self.assertEqual(attributes["wavecrest:max_depth"], "4095")  # as of `wavecrest reference`
         # Both are root mean squares of errors relative to the brightness around a pixel: of four parts, and of two halves.
         told = read_json(self.path("merged.json"))["relative_error"]
         self.assertLess(0.3 * told, float(attributes["wavecrest:relative_error"]))
@@ -223,6 +224,10 @@ class References(PartsTest):
             files = self.all_parts(method, *more, name=f"{method}{'-'.join(more)}-", spp=spp)
             result = self.merge(*files, "--reference", "a.exr", expect=INPUT)
             self.assert_one_error_line(result, f"--reference: {said}")
+        # The sum of four equal parts is one part.
+        self.merge(*self.all_parts("pt", "--sampler", "independent", name="equal", spp=16), "--checkpoint", "sum")
+        result = self.merge("sum", "--reference", "a.exr", expect=INPUT)
+        self.assert_one_error_line(result, "--reference: every other part does not have half")
         result = self.merge(*self.all_parts("pt", "--sampler", "independent", name="some", spp=16)[:2], "--reference", "a.exr", expect=INPUT)
         self.assertIn("error: --reference: missing are iterations 8 to 15 of 16", result.stderr)
         self.assertFalse((self.folder / "a.exr").exists())

@@ -148,6 +148,13 @@ except KeyboardInterrupt:
         with self.assertRaises(wc.InputError):
             wc.read_results(self.out / "nothing-here")
 
+    def test_results_that_cannot_be_reached_are_no_fault(self):
+        loop = self.out.with_name("loop")
+        loop.symlink_to(loop)
+        with self.assertRaisesRegex(wc.InputError, "loop: .*; expected a file or folder") as raised:
+            wc.read_results(loop)
+        self.assertEqual(raised.exception.file, str(loop))
+
     def tiny(self, name, scenes=("cornell-diffuse",), **options):
         options = {"spp": 1, "seeds": 1, "size": (16, 12), "threads": 2, "say": lambda line: None, **options}
         return wc.converge(scenes, out=self.out.with_name(name), **options)

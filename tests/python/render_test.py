@@ -159,6 +159,16 @@ result.save(again)
             with self.assertRaisesRegex(wc.UsageError, f"snapshots: {name} is for render"):
                 small().snapshots(iterations=[4, 8], **{name: value})
 
+    def test_values_that_an_option_cannot_have_are_refused_by_its_name(self):
+        for name, value in (("spp", -1), ("threads", 2.5), ("sampler", 3), ("method", 4)):
+            with self.assertRaisesRegex(wc.UsageError, f"^{name} {value}: expected"):
+                small().render(**{name: value})
+
+    def test_snapshots_are_due_at_some_time_and_after_whole_iterations(self):
+        for due in ({"times": [float("inf")]}, {"times": [float("nan")]}, {"iterations": [1.5, 1.9]}):
+            with self.assertRaisesRegex(wc.UsageError, "^snapshots at .*: expected"):
+                small().snapshots(**due)
+
     def test_numbers_out_of_range_are_refused_as_by_the_program(self):
         for method, name, value, text in (
             ("mlt", "chains", 0, "--chains 0: expected a number from 1 to 16777216"),
