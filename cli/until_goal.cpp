@@ -51,8 +51,7 @@ UntilGoal::UntilGoal(const UntilRequest& request, const RenderSettings& settings
   }
   // An error goal needs independent iterations.
   if (const std::string reason = whyNoFilmError(settings); !reason.empty()) {
-    throw UsageError(
-        fmt::format("--until-relative-error: {}; expected another method or --sampler independent", reason));
+    throw UsageError(fmt::format("--until-relative-error: {}; expected another method", reason));
   }
 }
 

@@ -10,7 +10,7 @@ namespace wavecrest {
 
 inline std::string durationWords(double seconds) {
   if (!std::isfinite(seconds)) return "unknown";
-  if (seconds < 100) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 99.5) return fmt::format("{:.2g} s", seconds);
   if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
   if (seconds < 48 * 3600) return fmt::format("{:.1f} h", seconds / 3600);
   return fmt::format("{:.0f} days", seconds / (24 * 3600));

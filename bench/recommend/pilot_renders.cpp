@@ -13,13 +13,13 @@ constexpr double kBootstrapPart = 0.06;
 constexpr uint64_t kFewestForPace = 4;  // iterations from which the time of one is told without that of the first
 
 // Seconds that a session has rendered, by this clock.
-double secondsBy(PilotClock clock, const Session& session, uint32_t threads) {
+double secondsBy(ClockKind clock, const Session& session, uint32_t threads) {
   const RenderStatistics statistics = session.statistics();
-  return clock == PilotClock::wall ? statistics.renderSeconds : statistics.cpuSeconds / threads;
+  return clock == ClockKind::wall ? statistics.renderSeconds : statistics.cpuSeconds / threads;
 }
 
 // Renders for so many seconds of the clock. A session stops by wall time, of which others may have taken a part.
-void renderBy(PilotClock clock, Session& session, uint32_t threads, double seconds) {
+void renderBy(ClockKind clock, Session& session, uint32_t threads, double seconds) {
   constexpr double kEnough = 0.98;
   for (double done = secondsBy(clock, session, threads); done < kEnough * seconds;
        done = secondsBy(clock, session, threads)) {
@@ -33,7 +33,7 @@ struct Part {
   double seconds = 0, pace = 0;
 };
 
-Part renderPart(const Scene& scene, const RenderSettings& settings, double seconds, PilotClock clock) {
+Part renderPart(const Scene& scene, const RenderSettings& settings, double seconds, ClockKind clock) {
   const auto session = Session::create(scene, settings);
   const auto now = [&] { return secondsBy(clock, *session, settings.threads); };
   // The first whole image, if it comes in time. What comes before it is done once in a render.
@@ -58,8 +58,14 @@ Part renderPart(const Scene& scene, const RenderSettings& settings, double secon
 
 }  // namespace
 
+RenderSettings pilotSettings(RenderSettings settings, Method method) {
+  settings.method = method;
+  settings.sampler = bestSampler(settings);
+  return settings;
+}
+
 PilotRender renderPilot(const Scene& scene, RenderSettings settings, uint64_t firstSeed, double seconds,
-                        PilotClock clock, bool biased) {
+                        ClockKind clock, bool biased) {
   PilotRender result;
   Pilot pilot{.parts = {}, .biased = biased};
   for (size_t i = 0; i < pilot.parts.size(); ++i) {

@@ -68,17 +68,38 @@ void forEachBlock(const Image& image, Visit&& visit) {
   }
 }
 
+// The variance of sums over blocks, over what it would be if pixels were independent, at least 1: pixels share photons,
+// and under every filter but a box samples as well. One figure for the image, as a block has only three samples of
+// noise.
+double varianceFactor(const NoiseSamples& noises) {
+  double ofSums = 0, ofSamples = 0;
+  forEachBlock(noises.front(), [&](const std::vector<size_t>& samples) {
+    for (const Image& noise : noises) {
+      double sum = 0;
+      for (const size_t i : samples) {
+        const auto value = static_cast<double>(noise.pixels[i]);
+        sum += value;
+        ofSamples += value * value;
+      }
+      ofSums += sum * sum;
+    }
+  });
+  return ofSamples > 0 ? std::max(ofSums / ofSamples, 1.0) : 1;
+}
+
 // Mean minus reference, averaged over each block, where that is more than noise of either explains; zero elsewhere.
 Image significantBias(const Image& mean, const NoiseSamples& noises, const PilotReference& reference) {
+  const double factor = varianceFactor(noises), referenceFactor = varianceFactor(reference.noises);
   Image bias = mean;
   forEachBlock(mean, [&](const std::vector<size_t>& samples) {
     // Difference of the sums over the block, and the variance that noise gives it.
-    double difference = 0, variance = 0;
+    double difference = 0, own = 0, referenceOwn = 0;
     for (const size_t i : samples) {
       difference += static_cast<double>(mean.pixels[i]) - static_cast<double>(reference.mean.pixels[i]);
-      for (const Image& noise : noises) variance += std::pow(static_cast<double>(noise.pixels[i]), 2) / 3;
-      for (const Image& noise : reference.noises) variance += std::pow(static_cast<double>(noise.pixels[i]), 2) / 3;
+      for (const Image& noise : noises) own += std::pow(static_cast<double>(noise.pixels[i]), 2) / 3;
+      for (const Image& noise : reference.noises) referenceOwn += std::pow(static_cast<double>(noise.pixels[i]), 2) / 3;
     }
+    const double variance = factor * own + referenceFactor * referenceOwn;
     const bool significant = std::abs(difference) > kSignificant * std::sqrt(variance);
     const double value = significant ? difference / static_cast<double>(samples.size()) : 0;
     for (const size_t i : samples) bias.pixels[i] = static_cast<float>(value);

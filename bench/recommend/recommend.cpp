@@ -99,22 +99,21 @@ void judgeRows(Recommendation& all) {
 Recommendation recommend(const Scene& scene, const RenderSettings& settings, const RecommendRequest& request) {
   Recommendation result{.scene = scene.name, .targetSsim = request.targetSsim, .budget = request.seconds};
   // The reference, by the method that `inspect` names.
-  RenderSettings own = settings;
   const PathClassTable classes = classifyPaths(scene);
-  own.method = result.referenceMethod = classes.reference.method;
-  const PilotRender rendered =
-      renderPilot(scene, own, kReferenceSeed, kReferencePart * request.seconds, request.clock, false);
+  result.referenceMethod = classes.reference.method;
+  const PilotRender rendered = renderPilot(scene, pilotSettings(settings, result.referenceMethod), kReferenceSeed,
+                                           kReferencePart * request.seconds, request.clock, false);
   if (!rendered.pilot) {
-    result.untold = fmt::format("the reference, by {}, has no whole images by then", toString(own.method));
+    result.untold = fmt::format("the reference, by {}, has no whole images by then", toString(result.referenceMethod));
     result.suggestedBudget = roundBudget(std::max(rendered.needed / kReferencePart, 2 * request.seconds));
     return result;
   }
   const PilotReference reference(*rendered.pilot);
   result.referenceSsim = reference.ssim;
   const auto predictRow = [&](RecommendRow& row, double seconds) {
-    own.method = row.method;
     const bool biased = strategiesOf(row.method).merge || !row.leavesOut.empty();
-    const PilotRender pilot = renderPilot(scene, own, kPilotSeed, seconds, request.clock, biased);
+    const PilotRender pilot =
+        renderPilot(scene, pilotSettings(settings, row.method), kPilotSeed, seconds, request.clock, biased);
     row.pilotSeconds = pilot.seconds;
     row.needed = pilot.needed;
     row.told = pilot.pilot.has_value();

@@ -18,7 +18,7 @@ struct RecommendRequest {
   double targetSsim = 0.95;
   double seconds = 60;  // render time of all pilots together; more where whole images take more (kMostOverrun)
   std::vector<Method> methods;
-  PilotClock clock = PilotClock::wall;
+  ClockKind clock = ClockKind::wall;
 };
 
 struct RecommendRow {

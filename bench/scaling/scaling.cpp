@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <span>
 
 #include "bench/against/child_render.h"
 #include "bench/scaling/list_schedule.h"
@@ -90,10 +88,7 @@ class RecordedRender {
 // is estimated, and to add it. All machines' parts are alike.
 std::vector<PartsScaling> partsScaling(const Session& session) {
   constexpr int kRepetitions = 3;
-  std::vector<unsigned char> state;
-  StateWriter out([&](std::span<const unsigned char> bytes) { state.insert(state.end(), bytes.begin(), bytes.end()); });
-  session.save(out);
-  out.flush();
+  const std::vector<unsigned char> state = savedBytes([&](StateWriter& out) { session.save(out); });
   const auto filmOf = [&] {
     StateReader in(state);
     return Film::fromState(in);
@@ -116,6 +111,17 @@ std::vector<PartsScaling> partsScaling(const Session& session) {
 }
 
 }  // namespace
+
+ChildRequest processRequest(const Scene& scene, const std::filesystem::path& file, Method method, uint64_t iterations) {
+  const FilmSettings& film = scene.film;
+  // A size would take the place of a crop window, and the scene as loaded has one by its file alone.
+  return {.scene = file,
+          .method = std::string(toString(method)),
+          .size = film.isCropped() ? std::string() : fmt::format("{}x{}", film.width, film.height),
+          .iterations = iterations,
+          .more = {},
+          .imageFile = {}};
+}
 
 ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& file, RenderSettings settings,
                              double seconds) {
@@ -161,14 +167,9 @@ ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& fi
   // Processes render as many iterations as one thread does in their part of the time.
   const double oneRate = median(oneThread),
                processSeconds = kProcessPart * seconds / static_cast<double>(measured.size());
-  const ChildRequest request{
-      .scene = file,
-      .method = std::string(toString(settings.method)),
-      .size = fmt::format("{}x{}", area.width, area.height),
-      .iterations = std::max<uint64_t>(
-          1, static_cast<uint64_t>(processSeconds * oneRate / static_cast<double>(area.pixels.size()))),
-      .more = {},
-      .imageFile = {}};
+  const double iterations = processSeconds * oneRate / static_cast<double>(area.pixels.size());
+  const ChildRequest request =
+      processRequest(scene, file, settings.method, std::max<uint64_t>(1, static_cast<uint64_t>(iterations)));
   // Measured speedups of threads, and of as many processes.
   double oneProcess = 0;
   for (size_t i = 0; i < measured.size(); ++i) {

@@ -3,10 +3,10 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "bench/against/child_render.h"
 #include "bench/machine/machine_watch.h"
 #include "bench/statistics/medians.h"
 #include "engine/plan/render_settings.h"
@@ -52,6 +52,9 @@ constexpr uint32_t kMostPredictedThreads = 256, kMostPredictedMachines = 64;
 // method, instruction set, threads and limits of paths; all else is what `render` takes by default.
 ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& file, RenderSettings settings,
                              double seconds);
+
+// What each process renders of the scene: the same image, in so many iterations.
+ChildRequest processRequest(const Scene& scene, const std::filesystem::path& file, Method method, uint64_t iterations);
 
 // A table for a terminal.
 std::string toText(const ScalingResult& result);

@@ -1,33 +1,29 @@
 // A ScalingResult as JSON (bench/schema.json).
 #include <nlohmann/json.hpp>
 
+#include "bench/estimate_json.h"
 #include "bench/scaling/scaling.h"
 
 namespace wavecrest {
-namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json pair(const Interval& interval) { return {interval.low, interval.high}; }
-
-}  // namespace
 
 Json toJson(const ScalingResult& result) {
   Json measured = Json::array(), predicted = Json::array(), parts = Json::array();
   for (const MeasuredScaling& row : result.measured) {
     measured.push_back({{"threads", row.threads},
                         {"paths_per_second", row.pathsPerSecond.value},
-                        {"paths_per_second_interval", pair(row.pathsPerSecond.interval)},
+                        {"paths_per_second_interval", intervalJson(row.pathsPerSecond.interval)},
                         {"speedup", row.speedup.value},
-                        {"speedup_interval", pair(row.speedup.interval)},
+                        {"speedup_interval", intervalJson(row.speedup.interval)},
                         {"process_speedup", row.processSpeedup}});
   }
   for (const PredictedScaling& row : result.predicted) {
     predicted.push_back({{"threads", row.threads},
                          {"speedup", row.speedup.value},
-                         {"speedup_interval", pair(row.speedup.interval)},
+                         {"speedup_interval", intervalJson(row.speedup.interval)},
                          {"parallelism", row.parallelism.value},
-                         {"parallelism_interval", pair(row.parallelism.interval)},
+                         {"parallelism_interval", intervalJson(row.parallelism.interval)},
                          {"tasks", row.tasks},
                          {"longest_task_seconds", row.longestTask}});
   }

@@ -5,13 +5,6 @@
 #include "bench/text_lines.h"
 
 namespace wavecrest {
-namespace {
-
-std::string times(const Estimate& estimate) {
-  return fmt::format("{:.2f} +-{:.2f}", estimate.value, estimate.interval.halfWidth());
-}
-
-}  // namespace
 
 std::string toText(const ScalingResult& result) {
   TextLines text;
@@ -19,7 +12,6 @@ std::string toText(const ScalingResult& result) {
   for (const std::string& doubt : doubtsAbout(result.machine)) line(text, "  doubt: {}", doubt);
   line(text, "  {:>7} {:>12} {:>15} {:>10} {:>15} {:>16} {:>7} {:>13}", "threads", "M paths/s", "speedup", "processes",
        "predicted", "work / span", "tasks", "longest, ms");
-  uint32_t threads = 1;
   const auto measuredOf = [&](uint32_t count) {
     return std::find_if(result.measured.begin(), result.measured.end(),
                         [count](const MeasuredScaling& row) { return row.threads == count; });
@@ -28,7 +20,8 @@ std::string toText(const ScalingResult& result) {
     return std::find_if(result.predicted.begin(), result.predicted.end(),
                         [count](const PredictedScaling& row) { return row.threads == count; });
   };
-  for (; threads <= kMostPredictedThreads; ++threads) {
+  const uint32_t most = std::max(kMostPredictedThreads, result.measured.back().threads);
+  for (uint32_t threads = 1; threads <= most; ++threads) {
     const auto measured = measuredOf(threads);
     const auto predicted = predictedOf(threads);
     if (measured == result.measured.end() && predicted == result.predicted.end()) continue;

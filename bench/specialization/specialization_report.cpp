@@ -5,8 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/enumerator_name.h"
+#include "bench/estimate_json.h"
 #include "bench/specialization/specialization.h"
 #include "bench/text_lines.h"
+#include "bench/tradeoff/tradeoff.h"
 
 namespace wavecrest {
 namespace {
@@ -22,11 +24,6 @@ std::string listed(const std::vector<std::string>& words) {
 std::string imageInWords(const FeatureSetRow& row) {
   if (row.sameBits) return "same bits";
   return fmt::format("{}, pixels {:.1e}", row.differs ? "DIFFERS" : "same", row.pixelDifference);
-}
-
-// A relative difference, its standard error, and how probable one as large is by chance.
-Json biasJson(const Bias& bias) {
-  return {{"value", bias.value}, {"standard_error", bias.standardError}, {"probability", bias.probability}};
 }
 
 }  // namespace
@@ -64,15 +61,13 @@ std::string specializationSummary(const std::vector<SpecializationResult>& resul
 Json toJson(const SpecializationResult& result) {
   Json rows = Json::array();
   for (const FeatureSetRow& row : result.rows) {
-    // Intervals are pairs of their ends.
-    const auto estimate = [](const Estimate& e) { return Json{e.interval.low, e.interval.high}; };
     rows.push_back({{"kernels", enumeratorName(kSpecializationNames, row.specialization)},
                     {"chosen", row.chosen},
                     {"pays_for", row.paysFor},
                     {"paths_per_cpu_second", row.pathsPerCpuSecond.value},
-                    {"paths_per_cpu_second_interval", estimate(row.pathsPerCpuSecond)},
+                    {"paths_per_cpu_second_interval", intervalJson(row.pathsPerCpuSecond.interval)},
                     {"speedup", row.speedup.value},
-                    {"speedup_interval", estimate(row.speedup)},
+                    {"speedup_interval", intervalJson(row.speedup.interval)},
                     {"bytes_per_path", row.bytesPerPath},
                     {"same_bits", row.sameBits},
                     {"pixel_difference", row.pixelDifference},

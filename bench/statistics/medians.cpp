@@ -26,7 +26,7 @@ double median(std::vector<double> values) {
   return quantile(values, 0.5);
 }
 
-Interval bootstrapMedian(std::span<const double> values, double level) {
+Interval bootstrapMedian(std::span<const double> values) {
   assert(!values.empty());
   if (values.size() < kFewestForBootstrap) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -40,14 +40,14 @@ Interval bootstrapMedian(std::span<const double> values, double level) {
     middle = median(sample);
   }
   std::sort(medians.begin(), medians.end());
-  return {quantile(medians, 0.5 * (1 - level)), quantile(medians, 0.5 * (1 + level))};
+  return {quantile(medians, 0.5 * (1 - kIntervalLevel)), quantile(medians, 0.5 * (1 + kIntervalLevel))};
 }
 
 Estimate estimateMedian(std::span<const double> values) {
   return {.value = median({values.begin(), values.end()}), .interval = bootstrapMedian(values)};
 }
 
-Estimate estimateMedianOfVisits(std::span<const std::vector<double>> visits, double level) {
+Estimate estimateMedianOfVisits(std::span<const std::vector<double>> visits) {
   assert(!visits.empty());
   if (visits.size() == 1) return estimateMedian(visits.front());
   // The medians of the visits, in ascending order.
@@ -63,7 +63,7 @@ Estimate estimateMedianOfVisits(std::span<const std::vector<double>> visits, dou
   while (2 * (outside + 1) < n) {
     term *= static_cast<double>(n - outside) / static_cast<double>(outside + 1);
     tail += term;
-    if (2 * tail > 1 - level) break;
+    if (2 * tail > 1 - kIntervalLevel) break;
     ++outside;
   }
   return {.value = quantile(medians, 0.5), .interval = {medians[outside], medians[n - 1 - outside]}};

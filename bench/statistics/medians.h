@@ -27,7 +27,7 @@ constexpr double kIntervalLevel = 0.95;
 // Interval of the median by the bootstrap: percentiles of the medians of kResamples resamples, drawn with fixed
 // random numbers so that the same values give the same interval (Efron, Tibshirani 1993, chapter 13). It assumes
 // independent values. Below six values a percentile interval is too narrow, and the extremes are returned.
-Interval bootstrapMedian(std::span<const double> values, double level = kIntervalLevel);
+Interval bootstrapMedian(std::span<const double> values);
 constexpr uint32_t kResamples = 2000;
 
 Estimate estimateMedian(std::span<const double> values);
@@ -35,9 +35,10 @@ Estimate estimateMedian(std::span<const double> values);
 // The median of repetitions made in several visits, between which time passes: the median of the visits' medians. A
 // machine whose speed drifts moves all values of a visit together, so values of one visit are not independent, but
 // visits are. The interval is between two of the sorted medians, as far from either end: the narrowest such pair that
-// holds the true median with probability `level`, whatever the distribution (Conover 1999, chapter 3.2). 95 % takes six
-// visits at least; with fewer the interval is their range, and with one that of estimateMedian. No visit may be empty.
-Estimate estimateMedianOfVisits(std::span<const std::vector<double>> visits, double level = kIntervalLevel);
+// holds the true median with probability kIntervalLevel, whatever the distribution (Conover 1999, chapter 3.2). 95 %
+// takes six visits at least; with fewer the interval is their range, and with one that of estimateMedian. No visit may
+// be empty.
+Estimate estimateMedianOfVisits(std::span<const std::vector<double>> visits);
 constexpr size_t kVisitsForInterval = 6;
 
 // Distance of the quartiles over the median: the spread of single values, which outliers do not move.

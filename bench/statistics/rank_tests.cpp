@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numeric>
 
 namespace wavecrest {
@@ -51,9 +50,11 @@ std::vector<double> sumsOfChoices(const std::vector<size_t>& ranks, size_t n) {
 
 double normalTwoSided(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
 
+int sideOf(size_t sum, size_t even) { return sum > even ? 1 : sum < even ? -1 : 0; }
+
 }  // namespace
 
-double signedRankProbability(std::span<const double> differences) {
+RankTest signedRankTest(std::span<const double> differences) {
   // Sizes and signs, without differences of 0.
   std::vector<double> sizes;
   std::vector<bool> positive;
@@ -62,7 +63,7 @@ double signedRankProbability(std::span<const double> differences) {
     sizes.push_back(std::abs(difference));
     positive.push_back(difference > 0);
   }
-  if (sizes.empty()) return 1;
+  if (sizes.empty()) return {};
   const std::vector<size_t> ranks = doubledRanks(sizes);
   // Every rank counts for the positive sum with probability one half.
   std::vector<double> distribution(std::accumulate(ranks.begin(), ranks.end(), size_t{0}) + 1);
@@ -76,16 +77,18 @@ double signedRankProbability(std::span<const double> differences) {
     }
     if (positive[i]) positiveSum += ranks[i];
   }
-  return twoSided(distribution, positiveSum);
+  return {twoSided(distribution, positiveSum), sideOf(2 * positiveSum, distribution.size() - 1)};
 }
 
-double rankSumProbability(std::span<const double> a, std::span<const double> b) {
-  if (a.empty() || b.empty()) return 1;
+RankTest rankSumTest(std::span<const double> a, std::span<const double> b) {
+  if (a.empty() || b.empty()) return {};
   std::vector<double> all(a.begin(), a.end());
   all.insert(all.end(), b.begin(), b.end());
   const std::vector<size_t> ranks = doubledRanks(all);
   const size_t sum = std::accumulate(ranks.begin(), ranks.begin() + static_cast<std::ptrdiff_t>(a.size()), size_t{0});
-  if (all.size() <= kMostExact) return twoSided(sumsOfChoices(ranks, a.size()), sum);
+  // The doubled ranks of all values sum to N (N + 1), with ties too.
+  const int side = sideOf(a.size() * (all.size() + 1), sum);
+  if (all.size() <= kMostExact) return {twoSided(sumsOfChoices(ranks, a.size()), sum), side};
   // Mean and variance of a sum drawn without replacement; of the ranks as they are, so ties are in it.
   const auto n = static_cast<double>(a.size()), m = static_cast<double>(b.size());
   double mean = 0, square = 0;
@@ -94,7 +97,7 @@ double rankSumProbability(std::span<const double> a, std::span<const double> b) 
     square += static_cast<double>(rank) * static_cast<double>(rank) / (n + m);
   }
   const double variance = n * m / (n + m - 1) * (square - mean * mean);
-  return variance > 0 ? normalTwoSided((static_cast<double>(sum) - n * mean) / std::sqrt(variance)) : 1;
+  return {variance > 0 ? normalTwoSided((static_cast<double>(sum) - n * mean) / std::sqrt(variance)) : 1, side};
 }
 
 std::vector<double> holm(std::span<const double> probabilities) {

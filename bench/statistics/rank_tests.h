@@ -7,13 +7,18 @@
 
 namespace wavecrest {
 
-// Wilcoxon's signed-rank test of paired differences: the two-sided probability of ranks as uneven as these if a
-// difference were as likely to be d as -d. Differences of 0 are left out; 1 if none is left.
-double signedRankProbability(std::span<const double> differences);
+struct RankTest {
+  double probability = 1;  // two-sided: of ranks as uneven as these without a difference
+  int side = 0;            // above 0 where positive differences, or the values of b, weigh more; 0 where none does
+};
 
-// Mann and Whitney's test of two independent samples, two-sided: exact up to kMostExact values together, by the normal
-// approximation above. 1 if either is empty.
-double rankSumProbability(std::span<const double> a, std::span<const double> b);
+// Wilcoxon's signed-rank test of paired differences: without a difference d is as likely as -d. Differences of 0 are
+// left out; probability 1 if none is left.
+RankTest signedRankTest(std::span<const double> differences);
+
+// Mann and Whitney's test of two independent samples: exact up to kMostExact values together, by the normal
+// approximation above. Probability 1 if either is empty.
+RankTest rankSumTest(std::span<const double> a, std::span<const double> b);
 constexpr size_t kMostExact = 60;
 
 // Holm's correction: probabilities for many tests at once, so that rejecting those below a level makes any false

@@ -49,13 +49,14 @@ void addTracing(Variants& variants) {
   }
 }
 
-// What changes the paths of every method. A depth limit is varied downwards only.
+// What changes the paths. A depth limit is varied downwards only. Of the chains those of pssmlt alone play roulette.
 void addPaths(Variants& variants, const RenderSettings& base) {
   for (const uint32_t depth : {4u, 8u, 16u}) {
     if (depth < base.limits.maxDepth) variants.add("--max-depth", std::to_string(depth)).limits.maxDepth = depth;
   }
+  const bool hasRoulette = base.method != Method::mlt || base.metropolis.variant == MetropolisVariant::pssmlt;
   for (const uint32_t depth : {2u, 5u, 12u}) {
-    if (depth != base.limits.rouletteDepth) {
+    if (hasRoulette && depth != base.limits.rouletteDepth) {
       variants.add("--rr-depth", std::to_string(depth)).limits.rouletteDepth = depth;
     }
   }

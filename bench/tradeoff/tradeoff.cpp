@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "bench/machine/energy.h"
-#include "bench/statistics/bands.h"
 #include "bench/tradeoff/block_means.h"
-#include "bench/until/film_error.h"
+#include "bench/tradeoff/seed_variances.h"
 #include "engine/inspect/path_classes.h"
 #include "engine/plan/render_plan.h"
 #include "engine/scene/scene_error.h"
@@ -77,44 +75,27 @@ TradeReference renderReference(const Scene& scene, const RenderSettings& base, d
 // The renders of one setting with all seeds.
 struct Measured {
   std::string refusal;
-  std::vector<double> cpuSeconds, variance;  // variance: of one image, from one seed to the next; the first has none
+  std::vector<double> cpuSeconds;
+  SeedVariances variances;  // of one image
   std::vector<BlockMeans> blocks;
-  Film previous;
   double paths = 0;
   std::optional<double> joules = 0;
   size_t bytes = 0;
 
-  void add(OneRender&& one, const TradeReference& reference, uint32_t width) {
-    if (!previous.empty()) {
-      // The mean square difference of two seeds' images is twice the variance of one image. The difference is added to
-      // the reference, so that the reference's brightness weighs the errors of all settings.
-      Film moved = reference.mean;
-      for (size_t i = 0; i < moved.size(); ++i) moved[i] += one.film[i] - previous[i];
-      const double error = relativeFilmError(reference.mean, moved, width);
-      variance.push_back(0.5 * error * error);
-    }
+  void add(const OneRender& one, const TradeReference& reference, uint32_t width) {
+    variances.add(one.film, reference.mean, width);
     blocks.push_back(blockMeans(one.film, width));
     cpuSeconds.push_back(one.cpuSeconds);
     paths += one.paths;
     bytes = one.bytes;
     joules = joules && one.joules ? std::optional(*joules + *one.joules) : std::nullopt;
-    previous = std::move(one.film);
   }
 };
-
-// Of each seed the ratio of the baseline's figure to this one's.
-Estimate ratioTo(const std::vector<double>& base, const std::vector<double>& own) {
-  std::vector<double> ratios;
-  for (size_t i = 0; i < own.size(); ++i) {
-    if (own[i] > 0) ratios.push_back(base[i] / own[i]);
-  }
-  return ratios.empty() ? Estimate{} : estimateMedian(ratios);
-}
 
 // Variance times time, seed by seed.
 // The first seed has no variance, so variance i belongs to the time of seed i + 1.
 std::vector<double> costs(const Measured& measured) {
-  std::vector<double> values = measured.variance;
+  std::vector<double> values = measured.variances.values();
   for (size_t i = 0; i < values.size(); ++i) values[i] *= measured.cpuSeconds[i + 1];
   return values;
 }
@@ -133,9 +114,9 @@ TradeRow rowOf(const Variant& variant, const Measured& own, const Measured& base
   row.pathsPerCpuSecond = own.paths / cpu;
   if (own.joules) row.joulesPerPath = *own.joules / own.paths;
   row.bytes = own.bytes;
-  row.speed = ratioTo(base.cpuSeconds, own.cpuSeconds);
+  row.speed = medianRatio(base.cpuSeconds, own.cpuSeconds);
   // Noise. Variance falls as 1 / time, so a relative error of 0.01 takes cost / 0.01^2 seconds.
-  row.efficiency = ratioTo(costs(base), costs(own));
+  row.efficiency = medianRatio(costs(base), costs(own));
   row.secondsToPercent = median(costs(own)) / (0.01 * 0.01);
   // Bias: seed by seed against double where the paths are the same, otherwise against the reference.
   const BlockComparison compared =

@@ -9,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/machine/machine_watch.h"
@@ -23,6 +24,7 @@ struct Bias {
   double value = 0, standardError = 0;
   double probability = 1;
 };
+nlohmann::ordered_json biasJson(const Bias& bias);
 
 struct TradeRow {
   std::string knob, value;
@@ -31,8 +33,10 @@ struct TradeRow {
   Estimate speed, efficiency;   // over the baseline's, seed by seed
   double secondsToPercent = 0;  // CPU time until the relative error is 1 %, by noise alone
   Bias mean;                    // of the image
-  Bias worstBlock;              // the most significant block of 8 x 8 pixels; its probability is that of any block
-  bool samePaths = false;       // compared seed by seed
+  // The most significant block of 8 x 8 pixels among those off by more than kNegligibleBias, or among all if none is;
+  // its probability is that of any block.
+  Bias worstBlock;
+  bool samePaths = false;  // compared seed by seed
   size_t bytes = 0;
   std::optional<double> joulesPerPath;
 
@@ -72,6 +76,10 @@ std::string toText(const TradeResult& result);
 nlohmann::ordered_json toJson(const TradeResult& result);
 // One page with a plot for each result: time to a relative error of 1 % against bias.
 std::string tradePage(const std::vector<TradeResult>& results);
+// What the baseline is, below the table.
+constexpr std::string_view kBaselineInWords =
+    "baseline: the settings of the study, as far as the method has them: --roulette throughput, --sampler independent, "
+    "--merge-vertices all, --radius 0.001, one light walk to a camera walk; render has other defaults";
 // What `biased` means in this table, with its error rate, or that there are too few seeds.
 std::string biasVerdictsInWords(const TradeResult& result);
 // What to do with this scene, in a sentence or two.

@@ -1,17 +1,19 @@
 // A TradeResult as JSON (bench/schema.json).
 #include <nlohmann/json.hpp>
 
+#include "bench/estimate_json.h"
 #include "bench/statistics/chains_mislead.h"
 #include "bench/tradeoff/tradeoff.h"
 
 namespace wavecrest {
+
+nlohmann::ordered_json biasJson(const Bias& bias) {
+  return {{"value", bias.value}, {"standard_error", bias.standardError}, {"probability", bias.probability}};
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json biasJson(const Bias& bias) {
-  return {{"value", bias.value}, {"standard_error", bias.standardError}, {"probability", bias.probability}};
-}
 
 Json rowJson(const TradeRow& row) {
   Json json = {{"knob", row.knob}, {"value", row.value}};
@@ -21,9 +23,9 @@ Json rowJson(const TradeRow& row) {
   }
   json.update({{"paths_per_cpu_second", row.pathsPerCpuSecond},
                {"speed", row.speed.value},
-               {"speed_interval", {row.speed.interval.low, row.speed.interval.high}},
+               {"speed_interval", intervalJson(row.speed.interval)},
                {"efficiency", row.efficiency.value},
-               {"efficiency_interval", {row.efficiency.interval.low, row.efficiency.interval.high}},
+               {"efficiency_interval", intervalJson(row.efficiency.interval)},
                {"cpu_seconds_to_percent", row.secondsToPercent},
                {"bias", biasJson(row.mean)},
                {"worst_block", biasJson(row.worstBlock)},

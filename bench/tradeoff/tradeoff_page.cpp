@@ -75,8 +75,8 @@ std::string tradePage(const std::vector<TradeResult>& results) {
     append(
         sections,
         "<p class=\"facts\">{} iterations of {}x{} pixels with {} seeds. Speed and efficiency are over the baseline's; "
-        "verdicts of bias are wrong anywhere in a table in {:g} of 100 cases.</p>\n",
-        result.iterations, result.width, result.height, result.seeds, 100 * kTradeLevel);
+        "verdicts of bias are wrong anywhere in a table in {:g} of 100 cases.</p>\n<p class=\"facts\">{}</p>\n",
+        result.iterations, result.width, result.height, result.seeds, 100 * kTradeLevel, kBaselineInWords);
     sections += "<div class=\"card\">" + renderPlot(plotOf(result)) + "</div>\n" + tableOf(result) + "</section>\n";
   }
   return plainPage("What speed costs", sections);

@@ -16,10 +16,6 @@ constexpr size_t kMostNamed = 3;
 // The setting as on the command line.
 std::string nameOf(const TradeRow& row) { return row.value.empty() ? row.knob : row.knob + " " + row.value; }
 
-std::string times(const Estimate& estimate) {
-  return fmt::format("{:.2f} +-{:.2f}", estimate.value, estimate.interval.halfWidth());
-}
-
 std::string percent(const Bias& bias) {
   return fmt::format("{:+.2g} +-{:.1g} %", 100 * bias.value, 100 * bias.standardError);
 }
@@ -47,7 +43,7 @@ std::string adviceOf(const TradeResult& result) {
     if (row.refusal.empty() && !isTooBiased(row) && row.efficiency.interval.low > kWorthNaming) gains.push_back(&row);
   }
   const std::string where = fmt::format("{}, {}: ", result.scene, toString(result.method));
-  if (gains.empty()) return where + "nothing here is worth more than its cost; the defaults are as good as any.";
+  if (gains.empty()) return where + "nothing here is worth more than its cost; the baseline is as good as any.";
   // The most efficient ones in a sentence.
   std::sort(gains.begin(), gains.end(),
             [](const TradeRow* a, const TradeRow* b) { return a->efficiency.value > b->efficiency.value; });
@@ -92,6 +88,7 @@ std::string toText(const TradeResult& result) {
                                   [](const TradeRow& row) { return row.joulesPerPath.has_value(); });
   if (!energy) line(text, "  energy: this machine does not tell (powercap)");
   line(text, "  {}", biasVerdictsInWords(result));
+  line(text, "  {}", kBaselineInWords);
   if (result.method == Method::mlt && result.seeds < kFewestChainRenders) line(text, "  doubt: {}", kChainsMislead);
   line(text, "\n  {}", adviceOf(result));
   return fmt::to_string(text);

@@ -1,7 +1,8 @@
 // Renders until the image resembles a reference, or is close enough to its expectation.
 //
-// The image is looked at after numbers of iterations that grow by an eighth to a quarter; the render clock stands still
-// meanwhile. So a goal is overshot by that much at most.
+// The image is looked at after numbers of iterations that grow by a quarter at most from the fourth on; for an error by
+// an eighth at most, from eight slices on. The render clock stands still meanwhile. From there on a goal is overshot by
+// as much at most.
 #pragma once
 
 #include <string>

@@ -52,10 +52,11 @@ class Until(CommandTest):
             ("--until-ssim", "0.9"),
             ("--reference", "x.exr"),
             ("--until-ssim", "0.9", "--reference", "x.exr", "--until-relative-error", "0.1"),
-            ("--until-relative-error", "0.1", "-m", "mlt"),
             ("--until-ssim", "0.9", "--reference", "x.exr", "--snapshot-every", "1s", "-o", self.path("y.exr")),
         ):
             self.assert_one_error_line(self.render(*arguments, expect=USAGE), "--")
+        refused = self.render("--until-relative-error", "0.1", "-m", "mlt", expect=USAGE)
+        self.assert_one_error_line(refused, "--until-relative-error: .*; expected another method$")
 
     def test_a_reference_of_another_size_is_bad_input(self):
         reference = self.path("reference.exr")

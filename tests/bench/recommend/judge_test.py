@@ -1,9 +1,14 @@
 """bench/recommend/judge reads the committed campaigns."""
 
+import argparse
+import contextlib
+import io
+import json
 import pathlib
 import subprocess
 import sys
 import unittest
+from unittest import mock
 
 ROOT = pathlib.Path(__file__).parents[3]
 JUDGE = ROOT / "bench" / "recommend" / "judge"
@@ -28,6 +33,22 @@ class Campaigns(unittest.TestCase):
         for campaign in CAMPAIGNS:
             for scene, curves in self.judge.read_curves(campaign).items():
                 self.assertEqual(set(curves), {"pt", "lt", "bpt", "mlt", "ppm", "bpm", "vcm"}, f"{campaign.name} {scene}")
+
+    def test_methods_are_those_of_the_campaign(self):
+        curve = [(1.0, 0.5), (2.0, 0.7), (4.0, 0.8)]
+        arguments = argparse.Namespace(program="wavecrest", budget="1s", size="64x48", threads="1", speed=1.0, here=False)
+        told = json.dumps({"method": None, "predicted_seconds": None, "cannot_tell": "why", "suggested_budget": 60})
+        with mock.patch.object(subprocess, "run", return_value=mock.Mock(stdout=told)) as run:
+            with contextlib.redirect_stdout(io.StringIO()):
+                self.assertIsNone(self.judge.judge("box", {"pt": curve, "vcm": curve}, 1.0, arguments))
+        words = run.call_args.args[0]
+        self.assertEqual(words[words.index("--methods") + 1], "pt,vcm")
+
+    def test_a_target_that_is_lost_again_is_not_reached(self):
+        curve = [(1, 0.5), (2, 0.95), (4, 0.8), (8, 0.96)]
+        self.assertAlmostEqual(self.judge.time_to(curve, 0.9), 4 * 2 ** (0.1 / 0.16))
+        self.assertIsNone(self.judge.time_to(curve[:3], 0.9))
+        self.assertEqual(self.judge.time_to(curve, 0.5), 1)
 
     def test_a_scene_that_is_not_there_is_refused(self):
         told = subprocess.run([sys.executable, JUDGE, "wavecrest", "moon"], capture_output=True, text=True)

@@ -140,6 +140,24 @@ TEST_F(PredictionTest, aBiasThatStaysIsNeverOvercome) {
   EXPECT_LT(p.ssimLimit, 0.95);
 }
 
+// Noise that neighbours share, as photons make it: each pixel has the mean of 5 x 5 independent values.
+TEST_F(PredictionTest, noiseThatPixelsShareIsNoBias) {
+  const Image without = scene();
+  Pilot pilot{.parts = {}, .seconds = 1, .biased = true};
+  for (unsigned part = 0; part < 4; ++part) {
+    const Image alone = noisy(0.25, 0, part);
+    Image& image = pilot.parts[part] = without;
+    for (uint32_t i = 0; i < 3 * kSide * kSide; ++i) {
+      const uint32_t x = i / 3 % kSide, y = i / 3 / kSide;
+      for (uint32_t k = 0; k < 25; ++k) {
+        const uint32_t from = 3 * ((y + k / 5) % kSide * kSide + (x + k % 5) % kSide) + i % 3;
+        image.pixels[i] += (alone.pixels[from] - without.pixels[from]) / 25;
+      }
+    }
+  }
+  EXPECT_GT(predict(reference_, pilot, 0.95).ssimLimit, 0.999);
+}
+
 // What a pilot lacks of a method that samples everything is noise.
 TEST_F(PredictionTest, aMethodWithoutBiasGetsThereWhateverItsPilotLacks) {
   Pilot pilot = pilotOf(4, -0.6);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bench/recommend/duration_words.h"
 #include "bench/recommend/recommend.h"
 #include "engine/load/load.h"
 #include "scenes/scene_list.h"
@@ -80,6 +81,19 @@ TEST(Verdict, neverSaysNever) {
   EXPECT_NE(text.find("four whole images take 99 s or more"), std::string::npos) << text;
 }
 
+TEST(Pilots, takeTheSamplerThatRenderTakes) {
+  for (const Method method : {Method::pt, Method::vcm, Method::ppm, Method::mlt}) {
+    const RenderSettings own = pilotSettings({}, method);
+    EXPECT_EQ(own.method, method);
+    EXPECT_EQ(own.sampler == SamplerKind::sobol, method == Method::pt || method == Method::vcm) << toString(method);
+  }
+}
+
+TEST(DurationWords, areNeverPowersOfTen) {
+  EXPECT_EQ(durationWords(99.4), "99 s");
+  EXPECT_EQ(durationWords(99.7), "2 min");
+}
+
 // Pilots are of whole images, however short their time.
 TEST(Pilots, areWholeOrNone) {
   LoadOptions options;
@@ -92,7 +106,7 @@ TEST(Pilots, areWholeOrNone) {
   for (const MethodEntry& entry : kMethods) {
     settings.method = entry.method;
     for (const double seconds : {1e-6, 0.2}) {
-      const PilotRender render = renderPilot(scene, settings, 1, seconds, PilotClock::cpu, false);
+      const PilotRender render = renderPilot(scene, settings, 1, seconds, ClockKind::cpu, false);
       if (seconds == 1e-6 && !strategiesOf(entry.method).merge) {
         EXPECT_FALSE(render.pilot) << entry.name;
         EXPECT_GT(render.needed, seconds) << entry.name;

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "bench/results/read_results.h"
-#include "bench/results/schema.h"
 #include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest {

@@ -39,7 +39,6 @@ TEST(BootstrapMedian, ofFewValuesIsTheirRange) {
 TEST(BootstrapMedian, isRepeatable) {
   const std::vector<double> values{1, 2, 3, 4, 5, 6, 7, 8, 9};
   EXPECT_EQ(bootstrapMedian(values).low, bootstrapMedian(values).low);
-  EXPECT_LT(bootstrapMedian(values, 0.5).halfWidth(), bootstrapMedian(values, 0.99).halfWidth());
 }
 
 TEST(MedianOfVisits, ofOneVisitIsThatOfItsValues) {

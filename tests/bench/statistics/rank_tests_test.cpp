@@ -10,19 +10,38 @@ namespace {
 
 TEST(SignedRank, countsSignsAsUneven) {
   // Of 32 choices of signs two are as uneven as all alike.
-  EXPECT_DOUBLE_EQ(signedRankProbability(std::vector<double>{1, 2, 3, 4, 5}), 2.0 / 32);
+  EXPECT_DOUBLE_EQ(signedRankTest(std::vector<double>{1, 2, 3, 4, 5}).probability, 2.0 / 32);
   // 14 of 64 subsets of the ranks 1 to 6 have a sum of at most 6, the rank of the one negative value.
-  EXPECT_DOUBLE_EQ(signedRankProbability(std::vector<double>{1, 2, 3, 4, 5, -6}), 28.0 / 64);
+  EXPECT_DOUBLE_EQ(signedRankTest(std::vector<double>{1, 2, 3, 4, 5, -6}).probability, 28.0 / 64);
 }
 
 TEST(SignedRank, sharesRanksAmongEqualValuesAndLeavesOutZeros) {
-  EXPECT_DOUBLE_EQ(signedRankProbability(std::vector<double>{1, 1, 0, 1, 1}), 2.0 / 16);
-  EXPECT_DOUBLE_EQ(signedRankProbability(std::vector<double>{0, 0}), 1);
+  EXPECT_DOUBLE_EQ(signedRankTest(std::vector<double>{1, 1, 0, 1, 1}).probability, 2.0 / 16);
+  EXPECT_DOUBLE_EQ(signedRankTest(std::vector<double>{0, 0}).probability, 1);
 }
 
 TEST(RankSum, countsChoicesAsUneven) {
-  EXPECT_DOUBLE_EQ(rankSumProbability(std::vector<double>{1, 2, 3}, std::vector<double>{4, 5, 6}), 2.0 / 20);
-  EXPECT_DOUBLE_EQ(rankSumProbability(std::vector<double>{1, 2, 4}, std::vector<double>{3, 5, 6}), 4.0 / 20);
+  EXPECT_DOUBLE_EQ(rankSumTest(std::vector<double>{1, 2, 3}, std::vector<double>{4, 5, 6}).probability, 2.0 / 20);
+  EXPECT_DOUBLE_EQ(rankSumTest(std::vector<double>{1, 2, 4}, std::vector<double>{3, 5, 6}).probability, 4.0 / 20);
+}
+
+// Fewer values weigh more than many where they are larger.
+TEST(SignedRank, sideIsWhereRanksWeighMore) {
+  EXPECT_GT(signedRankTest(std::vector<double>{-1, -1, -1, 3, 3}).side, 0);
+  EXPECT_LT(signedRankTest(std::vector<double>{1, 1, 1, -3, -3}).side, 0);
+  EXPECT_EQ(signedRankTest(std::vector<double>{2, -2, 0}).side, 0);
+  EXPECT_EQ(signedRankTest(std::vector<double>{}).side, 0);
+}
+
+TEST(RankSum, sideIsWhereRanksWeighMore) {
+  const std::vector<double> low{1, 2, 4}, high{4, 5};
+  EXPECT_GT(rankSumTest(low, high).side, 0);
+  EXPECT_LT(rankSumTest(high, low).side, 0);
+  EXPECT_EQ(rankSumTest(low, low).side, 0);
+  // Beyond kMostExact as well.
+  const std::vector<double> many(kMostExact, 3);
+  EXPECT_GT(rankSumTest(low, many).side, 0);
+  EXPECT_LT(rankSumTest(high, many).side, 0);
 }
 
 // Both sides of kMostExact: the exact distribution and its approximation.
@@ -39,8 +58,8 @@ TEST(RankSum, keepsItsLevelAndFindsAShift) {
         b[k] = noise(random);
         shifted[k] = b[k] + 2;
       }
-      alarms += rankSumProbability(a, b) <= 0.05 ? 1 : 0;
-      found += rankSumProbability(a, shifted) <= 0.05 ? 1 : 0;
+      alarms += rankSumTest(a, b).probability <= 0.05 ? 1 : 0;
+      found += rankSumTest(a, shifted).probability <= 0.05 ? 1 : 0;
     }
     EXPECT_LE(alarms, 42) << count;  // 20 expected, five standard deviations of 4.4
     EXPECT_GE(alarms, 4) << count;

@@ -32,6 +32,18 @@ TEST(Knobs, areThoseThatMeanSomethingForTheMethod) {
   }
 }
 
+TEST(Knobs, leaveOutRouletteWhereChainsHaveNone) {
+  const Scene scene = smallBox(48, 32);
+  for (size_t i = 0; i < kMetropolisVariantNames.size(); ++i) {
+    RenderSettings settings = settingsOf(Method::mlt);
+    settings.metropolis.variant = static_cast<MetropolisVariant>(i);
+    const auto variants = variantsOf(scene, settings);
+    EXPECT_EQ(std::any_of(variants.begin(), variants.end(), [](const Variant& v) { return v.knob == "--rr-depth"; }),
+              settings.metropolis.variant == MetropolisVariant::pssmlt)
+        << kMetropolisVariantNames[i];
+  }
+}
+
 TEST(Knobs, leaveOutConnectionRouletteWhereAllConnectionsAreJoined) {
   const Scene scene = smallBox(48, 32);
   for (const Accel accel : {Accel::small, Accel::bvh}) {
@@ -95,6 +107,13 @@ TEST(Advice, followsFromTheTable) {
   EXPECT_NE(
       toText(tableWith(near, false, 6)).find("any of the 4 verdicts of this table false with a probability of 1 %"),
       std::string::npos);
+}
+
+TEST(Advice, comparesWithTheBaselineWhichHasNotTheDefaults) {
+  TradeResult result = tableWith({}, false, 6);
+  result.rows[1].efficiency.interval.low = 0.9;
+  EXPECT_EQ(adviceOf(result), "box, pt: nothing here is worth more than its cost; the baseline is as good as any.");
+  EXPECT_NE(toText(result).find("baseline: the settings of the study"), std::string::npos);
 }
 
 TEST(Advice, saysThatFewSeedsCannotTell) {
