@@ -53,7 +53,7 @@ def small_multiples(campaign, metric):
         x, y = i % COLUMNS * (PANEL_WIDTH + GAP), head + i // COLUMNS * PANEL_HEIGHT
         times = [t for curve in curves.values() for t, _ in curve]
         values = [v for curve in curves.values() for _, v in curve]
-        across = decade_axis(min(times), max(max(times), 1.26 * min(times)), unit=" s")
+        across = decade_axis(min(times), max(max(times), 1.26 * min(times)), unit=" s", fewest=2)
         panel = Panel(
             x + LEFT, y + TOP, x + PANEL_WIDTH - RIGHT, y + PANEL_HEIGHT - BOTTOM, across, axis_of(metric, values)
         )

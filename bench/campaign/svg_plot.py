@@ -12,6 +12,7 @@ import re
 from curves import STUDY_ROWS
 
 WIDTH = 900
+LETTER = 8.5  # mean width of one in a label of an axis
 STYLE = pathlib.Path(__file__).resolve().parents[1] / "report" / "assets" / "plot.css"
 RULES = (
     "svg { background: #fff; } text { fill: #3a424a; } .name { font-weight: 650; fill: #1c2024; } .grid { stroke: #dfe2e5; }"
@@ -149,10 +150,14 @@ class Panel:
             parts.append(self.line("grid", self.left, y, self.right, y))
             if words:
                 parts.append(label(self.left - 6, y + 5, words, "end"))
+        free = -math.inf  # where the next label may begin
         for value, words in self.across.ticks:
-            x = self.x(value)
+            x, half = self.x(value), LETTER / 2 * len(re.sub("<[^>]*>", "", words))
             parts.append(self.line("grid", x, self.top, x, self.bottom))
-            parts.append(label(x, self.bottom + 19, words, "middle"))
+            middle = min(x, WIDTH - half)  # the picture has the whole of a label at its edge
+            if middle - half >= free:
+                parts.append(label(middle, self.bottom + 19, words, "middle"))
+                free = middle + half
         if floor and self.up.shows(floor):
             parts.append(self.line("floor", self.left, self.y(floor), self.right, self.y(floor)))
         # A view of its own clips without an identifier, which pages with several figures would share.

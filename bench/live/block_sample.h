@@ -17,13 +17,12 @@ class BlockSample {
   BlockSample(size_t width, size_t height, size_t most);
 
   size_t count() const { return blocks_.size(); }
-  size_t filmBlocks() const { return filmBlocks_; }  // whole ones
   // The blocks of a film (RGB, row by row), one below the other: an image kWidth wide.
   std::vector<float> take(std::span<const float> film) const;
   static constexpr size_t kWidth = PixelBlocks::kSide;
 
  private:
-  size_t width_, filmBlocks_;
+  size_t width_, filmBlocks_;   // filmBlocks_: whole ones
   std::vector<size_t> blocks_;  // the pixel at the upper left of each
 };
 

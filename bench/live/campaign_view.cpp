@@ -70,7 +70,10 @@ void CampaignView::publishRun(const RunRecord& run) {
   for (const SnapshotRecord& snapshot : run.snapshots) {
     Json values = Json::object();
     for (const auto& [name, value] : snapshot.values) values[name] = std::isfinite(value) ? Json(value) : Json();
-    points.push_back({{"seconds", snapshot.renderSeconds}, {"iterations", snapshot.iterations}, {"values", values}});
+    points.push_back({{"number", snapshot.number},
+                      {"seconds", snapshot.renderSeconds},
+                      {"iterations", snapshot.iterations},
+                      {"values", values}});
   }
   server_.publish(jsonText(Json{{"run",
                                  {{"scene", run.scene},

@@ -14,12 +14,6 @@ namespace {
 
 constexpr double kLookInterval = 1;  // seconds, at least
 
-// The smaller of two limits. An empty value is no limit.
-template <class T>
-std::optional<T> earlier(std::optional<T> a, std::optional<T> b) {
-  return a && b ? std::min(*a, *b) : a ? a : b;
-}
-
 }  // namespace
 
 WatchedSession::WatchedSession(std::unique_ptr<Session> session, const RenderSettings& settings, LookTaker taker)

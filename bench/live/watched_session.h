@@ -25,8 +25,6 @@ class WatchedSession final : public Session {
   Session& within() { return *session_; }
   // Looks now: at a snapshot, or at the end.
   void look(bool last);
-  // Seconds that the render was kept waiting.
-  double lookingSeconds() const { return lookingSeconds_; }
 
   void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) override;
   RenderStatistics statistics() const override { return session_->statistics(); }
@@ -66,7 +64,7 @@ class WatchedSession final : public Session {
   std::optional<FilmError> error_;
   uint64_t errorIterations_ = 0;  // that slicesUntil_ was when the error was estimated
   double nextLook_ = kFirstLook;  // render seconds
-  double lookingSeconds_ = 0;
+  double lookingSeconds_ = 0;     // that the render was kept waiting
 };
 
 }  // namespace wavecrest

@@ -33,7 +33,8 @@ std::string joined(const std::vector<std::string>& words, const char* last) {
   return text;
 }
 
-// The paragraph for a metric that has a target. Scenes with a single series are left out: nothing is compared there.
+// The paragraph for a metric that has a target. Scenes with a single series are left out, as nothing is compared there,
+// and so are scenes without a value at the end: their images are too small for the metric.
 std::string renderMetric(const ConvergenceReport& report, size_t index) {
   const ReportMetric& metric = report.metrics[index];
   // Group scenes by their answer.
@@ -42,6 +43,7 @@ std::string renderMetric(const ConvergenceReport& report, size_t index) {
     const ReportScene& scene = report.scenes[i];
     if (scene.series.size() < 2) continue;
     const SceneAnswer answer = answerFor(scene, metric, index);
+    if (!answer.reached && std::isnan(bestFinalValue(scene, metric, index))) continue;
     auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& known) {
       return known.reached == answer.reached && known.methods == answer.methods;
     });

@@ -1,37 +1,17 @@
 #include "bench/report/image_coding.h"
 
 #include <fmt/format.h>
-#include <png.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <stdexcept>
 
+#include "metrics/image/image_io.h"
 #include "metrics/image/jpeg_errors.h"
 
 namespace wavecrest {
 namespace {
-
-// A PNG file of 8-bit RGB, by the simplified interface of libpng.
-std::vector<uint8_t> encodePng(const ReportImage& image) {
-  png_image header = {};
-  header.version = PNG_IMAGE_VERSION;
-  header.width = image.width;
-  header.height = image.height;
-  header.format = PNG_FORMAT_RGB;
-  // First call asks for the size, second writes.
-  png_alloc_size_t size = 0;
-  if (png_image_write_to_memory(&header, nullptr, &size, 0, image.rgb.data(), 0, nullptr) == 0) {
-    throw std::runtime_error(fmt::format("report image '{}': {}", image.label, header.message));
-  }
-  std::vector<uint8_t> bytes(size);
-  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr) == 0) {
-    throw std::runtime_error(fmt::format("report image '{}': {}", image.label, header.message));
-  }
-  bytes.resize(size);
-  return bytes;
-}
 
 // Memory that libjpeg allocates by malloc. The caller frees it.
 struct JpegOutput {
@@ -114,7 +94,8 @@ std::vector<uint8_t> encodeImage(const ReportImage& image, const ImageCoding& co
                                             image.rgb.size(), image.width, image.height));
   }
   if (coding.reduction > 1) return encodeImage(reduced(image, coding.reduction), {coding.jpegQuality, 1});
-  return coding.jpegQuality == 0 ? encodePng(image) : encodeJpeg(image, coding.jpegQuality);
+  if (coding.jpegQuality != 0) return encodeJpeg(image, coding.jpegQuality);
+  return encodePng(fmt::format("report image '{}'", image.label), image.width, image.height, image.rgb.data());
 }
 
 }  // namespace wavecrest

@@ -2,7 +2,6 @@
 // entry is derived from it.
 #pragma once
 
-#include <string_view>
 #include <vector>
 
 #include "bench/report/report_data.h"

@@ -248,10 +248,13 @@ void drawEndLabels(std::string& svg, const std::vector<PlotCurve>& curves, const
   labels.reserve(curves.size());
   for (const PlotCurve& curve : curves) labels.push_back({&curve, frame.pixelY(curve.points.back().y)});
   std::stable_sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.y < b.y; });
+  // Closer together where so many would not fit between the edges.
+  const double gaps = static_cast<double>(std::max<size_t>(labels.size(), 2)) - 1;
+  const double spacing = std::min(kLabelSpacing, (kBottom - kTop) / gaps);
   // Downwards until each has room, then upwards from the lower edge for those that were pushed out.
-  for (size_t i = 1; i < labels.size(); ++i) labels[i].y = std::max(labels[i].y, labels[i - 1].y + kLabelSpacing);
+  for (size_t i = 1; i < labels.size(); ++i) labels[i].y = std::max(labels[i].y, labels[i - 1].y + spacing);
   double limit = kBottom;
-  for (size_t i = labels.size(); i-- > 0; limit = labels[i].y - kLabelSpacing) {
+  for (size_t i = labels.size(); i-- > 0; limit = labels[i].y - spacing) {
     labels[i].y = std::min(labels[i].y, limit);
   }
   for (const Label& label : labels) {

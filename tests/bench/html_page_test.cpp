@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <regex>
 #include <stdexcept>
 #include <utility>
@@ -215,6 +216,18 @@ TEST(Answer, namesTheMethodsThatAreFirstToTheTarget) {
   scene.noiseFloors[2] = 0.88;
   EXPECT_EQ(answerFor(scene, report.metrics[2], 2).figure, "0.85; the reference allows 0.88");
   EXPECT_LT(renderReport(report).find("class=\"answer\""), renderReport(report).find("<h2>Summary</h2>"));
+}
+
+// Images of fewer pixels than a metric's window have no score.
+TEST(Answer, leavesOutScenesWithoutAScore) {
+  ConvergenceReport report = sampleReport();
+  EXPECT_TRUE(contains(renderAnswer(report), "SSIM"));
+  for (ReportSeries& series : report.scenes[0].series) {
+    for (ReportRun& run : series.runs) {
+      for (ReportPoint& point : run.points) point.values[2] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  EXPECT_EQ(renderAnswer(report), "");
 }
 
 TEST(SceneSection, showsWhatIsKnownAndNothingElse) {

@@ -1,6 +1,7 @@
 """wavecrest bench: every method is measured, and its stages take up its time."""
 
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -312,6 +313,20 @@ class Score(CommandTest):
         self.assert_one_error_line(result, ".*bad.json: has no pictures")
 
 
+class Phoronix(CommandTest):
+    def test_its_suite_is_told_how_the_installation_ended(self):
+        (self.folder / "bin").mkdir()
+        pathlib.Path(self.write("bin/cmake", '#!/bin/sh\nexit "$ENDS"\n')).chmod(0o755)
+        for source, status in (("", 2), ("sources", 3), ("sources", 0)):
+            environment = os.environ | {
+                "HOME": str(self.folder), "PATH": f"{self.folder}/bin:{os.environ['PATH']}", "WAVECREST_SOURCE": source, "ENDS": str(status),
+            }  # fmt: skip
+            script = EXPORT.parent / "phoronix" / "install.sh"
+            done = subprocess.run(["sh", script], cwd=self.folder, env=environment, capture_output=True, check=False)
+            self.assertEqual(done.returncode, status)
+            self.assertEqual(pathlib.Path(self.path("install-exit-status")).read_text(), f"{status}\n")
+
+
 class Specialization(CommandTest):
     def test_says_what_a_scene_pays_for(self):
         told = self.run_wavecrest("bench", "cornell-diffuse", "cornell-mirror", "--specialization", "--methods", "pt",
@@ -347,17 +362,19 @@ class Modes(CommandTest):
             (["--threads", "1", "--machines", "m.json"], r"--machines measures nothing; expected no scenes"),
             (["-", "--against", WAVECREST], r"--against: other processes cannot read the scene from stdin"),
             (["-", "--scaling"], r"--scaling: other processes cannot read the scene from stdin"),
+            (["--specialization", "--threads", "2"], r"--specialization renders on one thread; expected no --threads$"),
             (["--extremes", "--duration", "1s"], r"--extremes has scenes, methods, sizes and lengths of its own"),
         ]:
             with self.subTest(arguments):
                 self.assert_one_error_line(self.run_wavecrest("bench", *arguments, expect=USAGE), answer)
 
     def test_variables_are_defaults_that_contradict_no_mode(self):
-        variables = {"WAVECREST_SIZE": "8x8", "WAVECREST_THREADS": "1"}
+        variables = {"WAVECREST_SIZE": "8x8", "WAVECREST_THREADS": "2"}
         for arguments, answer in [
             (["--score", "tiny"], r"--score tiny: unknown"),  # which comes after the size
             (["--machines", "none.json"], r".*none\.json: cannot be read"),
             (["--compare", "a.json", "b.json"], r".*[ab]\.json: cannot be read"),
+            (["none.xml", "--specialization"], r".*none\.xml: no such file"),
         ]:
             with self.subTest(arguments):
                 result = self.run_wavecrest("bench", *arguments, expect=None, variables=variables)

@@ -61,6 +61,10 @@ class Outputs(CommandTest):
         result = self.run_wavecrest("render", "cornell-mirror", *SMALL, "-o", "a.pfm", "--exposure", "1", expect=USAGE)
         self.assert_one_error_line(result, r"--exposure: is for PNG images alone; expected -o FILE\.png")
 
+    def test_exposure_takes_the_name_png_without_a_stem(self):
+        self.run_wavecrest("render", "cornell-mirror", *SMALL, "-o", ".png", "--exposure", "1")
+        self.assertTrue((self.folder / ".png").read_bytes().startswith(b"\x89PNG"))
+
     def write_half(self, name, image):
         width, height, values = image
         header = f"PF\n{width} {height}\n-1\n".encode()

@@ -175,6 +175,9 @@ class Statistics(CommandTest):
         evcm = decided("-m", "evcm")
         self.assertEqual(evcm["method"], read_json(self.path("stats.json"))["choice"]["method"])
         self.assertIn(decided("-m", "gpt")["guide"], ("radiance", "off"))
+        self.assertEqual(decided("-m", "gpt", "--guide", "off"), {"sampler": "sobol"})
+        why = read_json(self.path("stats.json"))["decisions"][0]["why"]
+        self.assertEqual(why, "Sobol points lower the noise of pt")
         lt = decided("-m", "lt")
         self.assertEqual(lt["light_paths"], read_json(self.path("stats.json"))["light_paths"] / 2)
 

@@ -94,7 +94,8 @@ class Usage(CommandTest):
             (["-m", "ppm", "--merge-vertices", "all"], r"--merge-vertices: ppm has no choice of .*; expected vcm or evcm$"),
             (["-m", "vcm", "--merge-vertices", "none"], r"--merge-vertices none: unknown; expected one of all, first"),
             (["-m", "mlt", "--connection-roulette", "5"], r"--connection-roulette: mlt .*; expected bpt, vcm or evcm$"),
-            (["-m", "mlt", "--roulette", "albedo"], r"--roulette: mlt ends walks by throughput; expected pt, lt, .* or evcm$"),
+            (["-m", "mlt", "--roulette", "albedo"], r"--roulette: mlt has no such choice; expected pt, lt, .* or evcm$"),
+            (["-m", "mlt", "--rr-depth", "3"], r"--rr-depth: mmlt ends no walk by roulette; expected --mlt pssmlt$"),
             (["--guide", "off"], r"--guide: pt learns no guide; expected gpt$"),
             (["-m", "vcm", "--guide-memory", "8MiB"], r"--guide-memory: vcm learns no guide; expected gpt$"),
             (["-m", "gpt", "--guide", "light"], r"--guide light: unknown; expected one of auto, radiance, variance, off$"),
@@ -177,7 +178,8 @@ class Usage(CommandTest):
             (["render", "cornell-diffuse", "--isa", "axv2"], USAGE, r"--isa axv2: .*did you mean 'avx2'\?"),
             (["converge", "--profile", "quikc", "--out", "a"], USAGE, r"--profile quikc: .*did you mean 'quick'\?"),
             (["compare", "a.exr", "b.exr", "--metrics", "sism"], USAGE, r"--metrics sism: .*did you mean 'ssim'\?"),
-            (["bench", "--score", "small", "--methods", "pt,gpt"], USAGE, r"--score small: has no method gpt; expected"),
+            (["bench", "--score", "small", "--methods", "pt,gpt"], USAGE,
+             r"--score small: has no method gpt; expected none, or some of pt, lt, bpt, mlt, ppm, bpm, vcm$"),
             (["bench", "--methods", "vmc"], USAGE, r"--methods vmc: .*did you mean 'vcm'\?"),
             (["recommend", "cornell-diffuse", "--methods", "vmc"], USAGE, r"did you mean 'vcm'\?"),
             (["render", "cornell-diffuse", "--precision", "flaot"], USAGE, r"did you mean 'float'\?"),
@@ -268,6 +270,14 @@ class Usage(CommandTest):
         # Commands without the option do not read it.
         self.run_wavecrest("scenes", variables={"WAVECREST_SEED": "six"})
         self.run_wavecrest("--config", "absent.toml", "scenes", expect=USAGE)
+
+    def test_a_variable_never_contradicts_what_was_asked_for(self):
+        for chains in (["--mlt", "pssmlt"], ["--no-direct-pass"]):
+            chains = ["-m", "mlt", *chains, "--chains", "50", "--bootstrap", "400", "--spp", "1", "-o", "a.pfm"]
+            command = ["render", "cornell-diffuse", "--size", "8x8", *chains]
+            self.run_wavecrest(*command, variables={"WAVECREST_SAMPLER": "sobol"})
+            wrong = self.run_wavecrest(*command, "--sampler", "sobol", expect=USAGE)
+            self.assert_one_error_line(wrong, "--sampler sobol: is for the direct pass")
 
     def test_variables_of_the_caller_reach_no_test(self):
         command = [sys.executable, "-c", "import harness, os; print(sorted(set(os.environ) & {'WAVECREST_SIZE', 'WAVECREST'}))"]

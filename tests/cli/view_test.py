@@ -118,7 +118,7 @@ class ViewTest(Viewed):
             [(run["method"], run["seed"]) for run in runs], [("pt", 1), ("bpt", 1), ("pt", 2), ("bpt", 2)]
         )
         for run in runs:
-            self.assertEqual([point["iterations"] for point in run["points"]], [1, 2, 4])
+            self.assertEqual([(point["number"], point["iterations"]) for point in run["points"]], [(0, 1), (1, 2), (2, 4)])
             self.assertTrue(all(point["values"]["rmse"] > 0 for point in run["points"]))
         progress = [event["progress"] for event in events if "progress" in event]
         self.assertEqual([p["done"] for p in progress], [1, 2, 3, 4])

@@ -7,6 +7,7 @@ import base64
 import math
 import pathlib
 import re
+import shutil
 import struct
 import time
 import unittest
@@ -62,6 +63,14 @@ class ViewerTest(CommandTest):
     def slide(self, selector, value):
         script = "const slider = document.querySelector(arguments[0]); slider.value = arguments[1]; slider.dispatchEvent(new Event('input'))"
         self.browser.run(script, selector, value)
+
+    def key(self, key, **modifiers):
+        """Whether the viewer has taken the key."""
+        script = (
+            "const event = new KeyboardEvent('keydown', { cancelable: true, ...arguments[0] });"
+            "document.querySelector('.viewer').dispatchEvent(event); return event.defaultPrevented"
+        )
+        return self.browser.run(script, {"key": key, **modifiers})
 
     def floats(self):
         """The floats of each pane as the page has read them."""
@@ -186,6 +195,67 @@ class ViewerTest(CommandTest):
         for image in figure.findall("svg:image", names):
             picture = base64.b64decode(image.get("href").removeprefix("data:image/png;base64,"))
             self.assertEqual(struct.unpack_from(">II", picture, 16), (16, 8))
+
+    def test_thin_crops_and_odd_names_are_exported(self):
+        for name, seed in (("tall", 1), ("a~b_c", 2)):
+            self.run_wavecrest("render", "cornell-diffuse", "--size", "24x400", "--spp", 1, "--seed", seed, "-o", f"{name}.pfm", "--quiet")
+        self.run_wavecrest("compare", "tall.pfm", "a~b_c.pfm", "--html", "page.html", "--metrics", "rmse,relmse")
+        self.browser.open((self.folder / "page.html").as_uri())
+        is_image, table = self.browser.run(
+            "const tools = new Viewer(document.querySelector('.viewer')).floats; await tools.load();"
+            "tools.setCrop([3, 0], [3, 399]);"
+            "return [Boolean(await new Promise((done) => tools.figure().toBlob(done))), tools.latex()]"
+        )
+        self.assertTrue(is_image)
+        self.assertIn("  a\\textasciitilde{}b\\_c & ", table)
+
+    def test_without_its_floats_a_page_claims_nothing(self):
+        self.open_times()
+        shutil.rmtree(self.folder / "images/report.floats")
+        self.browser.run("window.rejections = []; addEventListener('unhandledrejection', (event) => rejections.push(String(event.reason)))")
+        says_so = "document.querySelector('.values output').textContent.endsWith('is not there')"
+        claims = (
+            "return [document.querySelector('.floats label output').textContent, document.querySelectorAll('.cropping, canvas.light').length,"
+            "[...document.querySelectorAll('.floats button')].map((button) => button.ariaPressed), rejections]"
+        )
+        for key in "eeelc":
+            self.key(key)
+            self.browser.until(says_so)
+            self.assertEqual(self.browser.run(claims), ["0 EV", 0, ["false", "false"], []], key)
+        self.slide(".tools .time", 0)
+        self.browser.until(says_so)
+        self.assertEqual(self.browser.run(claims), ["0 EV", 0, ["false", "false"], []])
+
+    def test_shortcuts_and_further_buttons_are_the_browsers(self):
+        self.open_comparison()
+        self.assertTrue(self.key("ArrowLeft"))
+        for key in ("ArrowLeft", "d", "1", "+"):
+            for modifier in ("altKey", "ctrlKey", "metaKey"):
+                self.assertFalse(self.key(key, **{modifier: True}), f"{modifier} {key}")
+        self.assertFalse(self.browser.run("return document.querySelector('.viewer').classList.contains('zoomed')"))
+        self.browser.click("Side by side")
+        self.browser.click("2×")
+        self.browser.run("document.querySelector('.viewer').scrollIntoView()")
+        place = {"type": "pointerMove", "origin": {ELEMENT: self.browser.find(".pane .frame")}, "x": 0, "y": 0}
+        views = []
+        for button in (1, 0):
+            down, up = ({"type": kind, "button": button} for kind in ("pointerDown", "pointerUp"))
+            views.append(self.browser.run("return document.querySelector('.frame img').style.transform"))
+            self.browser.pointer(place, down, place | {"x": 30}, up)
+        views.append(self.browser.run("return document.querySelector('.frame img').style.transform"))
+        self.assertEqual(views[0], views[1], "the middle button does not drag")
+        self.assertNotEqual(views[1], views[2])
+
+    def test_print_shows_whole_pictures(self):
+        self.open_comparison()
+        self.slide(".floats input", 2)
+        self.browser.until("document.querySelector('canvas.light')")
+        self.browser.click("4×")
+        self.browser.click("Wipe")
+        self.browser.ask("POST", "/goog/cdp/execute", {"cmd": "Emulation.setEmulatedMedia", "params": {"media": "print"}})
+        for element in (".frame img", "canvas.light"):
+            self.assertEqual(self.browser.run("return getComputedStyle(document.querySelector(arguments[0])).transform", element), "none")
+        self.assertEqual(self.browser.run("return getComputedStyle(document.querySelector('.over')).display"), "none")
 
     def wait_for_download(self, file):
         deadline = time.monotonic() + PATIENCE_SECONDS

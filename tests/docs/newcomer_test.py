@@ -89,6 +89,13 @@ class Pages(unittest.TestCase):
         self.assertIn("`out/quickstart/report.html`", self.readme)
         self.assertIn("\nout=out/quickstart\n", script)
 
+    def test_quickstart_helps_from_any_folder_and_ignores_nothing(self):
+        for words, status, stream in ((["--help"], 0, "stdout"), (["--help", "x"], 2, "stderr"), (["--fast"], 2, "stderr")):
+            command = [f"{ROOT.name}/quickstart", *words]
+            told = subprocess.run(command, cwd=ROOT.parent, capture_output=True, text=True, check=False)
+            self.assertEqual(told.returncode, status, told.stderr)
+            self.assertIn("./quickstart --build-only ", getattr(told, stream))
+
 
 class Newcomer(unittest.TestCase):
     def setUp(self):

@@ -1,13 +1,13 @@
 #!/bin/sh
 # Installs the test: builds the sources that WAVECREST_SOURCE names, and leaves a launcher under the test's name.
 set -e
+trap 'echo $? > ~/install-exit-status' EXIT
 if [ -z "$WAVECREST_SOURCE" ]; then
   echo "WAVECREST_SOURCE is not set; expected the folder of wavecrest's sources" >&2
   exit 2
 fi
 cmake -S "$WAVECREST_SOURCE" -B build -DCMAKE_BUILD_TYPE=Release -DWAVECREST_TESTS=OFF -DWAVECREST_BENCH=OFF
 cmake --build build --target wavecrest wavecrest_scene_assets --parallel "$NUM_CPU_CORES"
-echo $? > ~/install-exit-status
 
 cat > wavecrest <<LAUNCHER
 #!/bin/sh

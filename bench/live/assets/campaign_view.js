@@ -51,14 +51,14 @@ function build() {
 
 const valueOf = (point, metric) => point.values[metric] ?? NaN;
 
-// Mean over seeds of the snapshots of one number, where all runs have it.
+// Mean over seeds of the snapshots of one number, where all runs have it. curves: [number, seconds, value] of each snapshot.
 function meanCurve(curves) {
-  if (curves.length < 2) return curves[0] ?? [];
-  const count = Math.min(...curves.map((curve) => curve.length)), mean = [];
-  for (let i = 0; i < count; ++i) {
-    mean.push([0, 1].map((column) => curves.reduce((sum, curve) => sum + curve[i][column], 0) / curves.length));
+  const byNumber = new Map();
+  for (const curve of curves) {
+    for (const [snapshot, ...point] of curve) byNumber.set(snapshot, [...(byNumber.get(snapshot) ?? []), point]);
   }
-  return mean;
+  return [...byNumber].filter(([, points]) => points.length === curves.length).sort(([a], [b]) => a - b)
+    .map(([, points]) => [0, 1].map((column) => points.reduce((sum, point) => sum + point[column], 0) / points.length));
 }
 
 function draw() {
@@ -75,11 +75,11 @@ function draw() {
         cells[seed - 1].className = run.state;
         cells[seed - 1].title = run.reason || `seed ${seed}`;
         if (run.points.length === 0) continue;
-        single.push(run.points.map((point) => [point.seconds, valueOf(point, metric.name)]));
+        single.push(run.points.map((point) => [point.number, point.seconds, valueOf(point, metric.name)]));
         last.push(valueOf(run.points.at(-1), metric.name));
         iterations += run.points.at(-1).iterations;
       }
-      if (single.length > 1) curves.push(...single.map((points) => ({ points, color: `m-${id}`, thin: true })));
+      if (single.length > 1) curves.push(...single.map((run) => ({ points: run.map(([, ...point]) => point), color: `m-${id}`, thin: true })));
       curves.push({ points: meanCurve(single), color: `m-${id}` });
       last = last.filter(Number.isFinite);
       const refused = [...cells].some((cell) => cell.className === "refused");

@@ -66,7 +66,8 @@ function rangeOf(values, log) {
   let low = finite.reduce((least, value) => Math.min(least, value));
   let high = finite.reduce((most, value) => Math.max(most, value));
   if (!log) return [0, high > 0 ? high * 1.15 : 1];
-  if (high / low < 1.5) [low, high] = [low / 1.3, high * 1.3];
+  // Wider than the largest step between two ticks, from 3 to 5: the axis has one at least.
+  if (high / low < 1.7) [low, high] = [low / 1.3, high * 1.3];
   return [low, high];
 }
 

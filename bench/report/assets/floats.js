@@ -145,7 +145,7 @@ class FloatTools {
     for (const crop of (viewer.root.dataset.crops ?? "").split(" ").filter(Boolean)) {
       const [x, y, width, height] = crop.split(/[,x]/).map(Number);
       button(`Crop ${width} × ${height} at (${x}, ${y})`, async () => {
-        await this.load();
+        if (!await this.loaded()) return;
         this.setCrop([x, y], [x + width - 1, y + height - 1]);
         this.showCrop();
       });
@@ -182,7 +182,7 @@ class FloatTools {
     if (!this.asked) return;
     this.values.textContent = kPointText;
     await this.draw();
-    if (!this.result.hidden) this.showCrop();
+    if (this.ready && !this.result.hidden) this.showCrop();
   }
 
   // The values of all panes at a pixel.
@@ -209,6 +209,21 @@ class FloatTools {
     await this.load();
   }
 
+  // Whether the floats are there. Without them nothing that needs them stays chosen, and the page shows its own pictures.
+  async loaded() {
+    try {
+      await this.load();
+      return true;
+    } catch {
+      this.exposure = 0;
+      this.luminance = this.cropping = false;
+      this.viewer.root.classList.remove("cropping");
+      this.result.hidden = true;
+      this.say();
+      return false;
+    }
+  }
+
   say() {
     this.shown.textContent = (this.exposure > 0 ? "+" : "") + this.exposure + " EV";
     this.slider.value = this.exposure;
@@ -229,7 +244,7 @@ class FloatTools {
   // The pictures as they are on the page, or canvases over them.
   async draw() {
     this.say();
-    await this.load();
+    if (!await this.loaded()) return;
     for (const pane of this.panes) {
       const frame = pane.querySelector(".frame");
       let canvas = frame.querySelector("canvas.light");
@@ -253,7 +268,7 @@ class FloatTools {
     this.cropping = on;
     this.viewer.root.classList.toggle("cropping", on);
     this.say();
-    return this.load();
+    return this.loaded();
   }
 
   // The pixel under the pointer.
@@ -277,6 +292,7 @@ class FloatTools {
       if (begin) this.setCrop(begin, [x, y]);
     });
     frame.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
       this.load().catch(() => {});  // which has said so
       if (this.cropping && this.ready) begin = this.pixelAt(frame, event);
     });
@@ -347,7 +363,7 @@ class FloatTools {
     return canvas;
   }
 
-  get scale() { return Math.max(1, Math.round(192 / this.crop.width)); }
+  get scale() { return Math.max(1, Math.round(192 / Math.max(this.crop.width, this.crop.height))); }
 
   labels() { return ["reference", ...this.errors().map((row) => `${row.name}: relMSE ${shortNumber(row.relMSE)}`)]; }
 
@@ -382,7 +398,8 @@ class FloatTools {
   }
 
   latex() {
-    const escaped = (text) => text.replace(/[&%$#_{}]/g, "\\$&");
+    const names = { "\\": "\\textbackslash{}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}" };
+    const escaped = (text) => text.replace(/[\\~^&%$#_{}]/g, (letter) => names[letter] ?? "\\" + letter);
     const rows = this.errors().map((row) => `  ${escaped(row.name)} & ${kCropMetrics.map((metric) => shortNumber(row[metric])).join(" & ")} \\\\`);
     return `\\begin{tabular}{l${"r".repeat(kCropMetrics.length)}}\n  & ${kCropMetrics.join(" & ")} \\\\\n  \\hline\n${rows.join("\n")}\n\\end{tabular}\n`;
   }

@@ -219,10 +219,11 @@ class Viewer {
   }
 
   onKey(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;  // the browser's own
     if (event.target.type === "range" && event.key.startsWith("Arrow")) return;  // the slider's own
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
     const digit = Number(event.key);
-    if (!event.ctrlKey && !event.metaKey && this.floats?.onKey(event.key)) return event.preventDefault();
+    if (this.floats?.onKey(event.key)) return event.preventDefault();
     if (event.key === "w") return this.setWipe(!this.wiping);
     if (event.key === "+" || event.key === "-") return this.zoomTo(this.view.zoom * (event.key === "+" ? 2 : 0.5), 0.5, 0.5);
     if (event.key === "m" && this.kinds.length > 1) return this.showKind((this.kind + 1) % this.kinds.length);
@@ -272,6 +273,7 @@ class Viewer {
     const pointers = new Map();
     frame.addEventListener("dragstart", (event) => event.preventDefault());
     frame.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
       frame.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, event);
       this.root.focus({ preventScroll: true });
