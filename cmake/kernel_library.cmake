@@ -13,11 +13,13 @@ set(WAVECREST_ISA_DEFINES_avx512 HWY_COMPILE_ONLY_STATIC HWY_BASELINE_TARGETS=HW
 # Lane code is made of small structs passed by reference that all end up in registers. Checking each reference for null
 # and alignment, and each temporary for its scope, makes a sanitized compilation ten times longer and finds nothing.
 # Where they do end up there, sanitized tests run several times as fast, for half as long a compilation again.
+# Sanitized lane code has no debug information, as g++ spends long on that of inlined code: the undefined-behaviour
+# sanitizer names file and line without it, the address sanitizer only the function.
 add_library(wavecrest_lane_options INTERFACE)
 target_compile_options(wavecrest_lane_options INTERFACE $<$<CONFIG:Release>:-O3>)  # also where the folder's own are lower
 if(WAVECREST_SANITIZE MATCHES "address")
   target_compile_options(wavecrest_lane_options INTERFACE
-    -O1 -fno-sanitize-address-use-after-scope -fno-sanitize=null,alignment,object-size)
+    -O1 -g0 -fno-sanitize-address-use-after-scope -fno-sanitize=null,alignment,object-size)
 endif()
 
 # What each lane source is compiled with.

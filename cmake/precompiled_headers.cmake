@@ -34,12 +34,12 @@ function(add_precompiled_headers name)
 endfunction()
 
 # For the libraries and executables of a folder and those below that link `library` themselves, whose macros the headers
-# depend on; not for lane sources, which have their own (kernel_library.cmake).
+# depend on. Lane sources, which do not, have headers of their own (kernel_library.cmake).
 function(use_precompiled_headers name library directory)
   get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(type ${target} TYPE)
-    if(NOT type MATCHES "^(EXECUTABLE|STATIC_LIBRARY)$")
+    if(target STREQUAL name OR NOT type MATCHES "^(EXECUTABLE|STATIC_LIBRARY|OBJECT_LIBRARY)$")
       continue()
     endif()
     get_target_property(linked ${target} LINK_LIBRARIES)

@@ -38,8 +38,8 @@ if(WAVECREST_ONLY_COMPLETE_KERNELS)
   target_compile_definitions(wavecrest_options INTERFACE WAVECREST_ONLY_COMPLETE_KERNELS)
 endif()
 if(WAVECREST_SANITIZE)
-  # Without optimisation but in lanes (kernel_library.cmake), and lines but no variables for the debugger: the checks
-  # multiply what an optimiser has to read, and the tests do less work anyway (tests/effort.h).
+  # Without optimisation, as the checks multiply what an optimiser has to read and the tests do less work anyway
+  # (tests/effort.h), and with lines but no variables for the debugger. Lanes have other options (kernel_library.cmake).
   target_compile_options(wavecrest_options INTERFACE
     -fsanitize=${WAVECREST_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -O0 -g1)
   target_link_options(wavecrest_options INTERFACE -fsanitize=${WAVECREST_SANITIZE})

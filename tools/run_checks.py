@@ -4,6 +4,9 @@ In: the source tree; --steps picks some. Out: the tools' own output, how long ea
 what it said, and as the last line `N passed, N failed`; status 1 if anything failed. Test counts come from ctest's
 JUnit file, never from its text: a test that could not start (missing executable, failed fixture) is a failure here, one
 that said "skip" is listed and not counted.
+
+Whoever keeps a compiler cache sets CMAKE_CXX_COMPILER_LAUNCHER=ccache in the environment, which CMake reads when it
+configures a build folder; without it headers are precompiled (cmake/precompiled_headers.cmake).
 """
 
 import argparse
@@ -21,6 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 JOBS = os.cpu_count() or 1
 TEST_TIMEOUT_SECONDS = 600
 SHOWN_LINES = 12  # of what a failed test said, in the summary
+SHOWN_CASES = 20  # of each step's tests, the slowest
 # A build folder keeps the options of its last step: every step says those that some step changes.
 RELEASE_OPTIONS = ("-DWAVECREST_SHARED=ON", "-DWAVECREST_PYTHON=OFF", "-DWAVECREST_MPI=AUTO")
 
@@ -33,6 +37,7 @@ class Tally:
         self.failed = []  # with what it said last, if anything
         self.skipped = []
         self.seconds = {}
+        self.cpu = 0.0  # seconds of the processor that all steps so far have used
 
     def record(self, name, held):
         (self.passed if held else self.failed).append(name)
@@ -40,7 +45,11 @@ class Tally:
 
     def end(self, name, start, outcome):
         self.seconds[name] = time.monotonic() - start
-        print(f"=== {name}: {outcome} in {self.seconds[name]:.0f} s", flush=True)
+        times = os.times()
+        cpu = times.children_user + times.children_system
+        cores = (cpu - self.cpu) / max(self.seconds[name], 1e-3)
+        self.cpu = cpu
+        print(f"=== {name}: {outcome} in {self.seconds[name]:.0f} s, {cores:.1f} cores busy", flush=True)
 
 
 def run(tally, name, command, **environment):
@@ -53,11 +62,9 @@ def run(tally, name, command, **environment):
 
 
 def build(tally, preset, *options, targets=("all",)):
-    """Configures and builds a preset or some targets of it, through ccache where there is one."""
+    """Configures and builds a preset or some targets of it."""
     if preset == "release":
         options = (*RELEASE_OPTIONS, *options)  # of two values for an option the last counts
-    if shutil.which("ccache"):
-        options = ("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", *options)
     return run(tally, f"{preset}: configure", ["cmake", "--preset", preset, *options]) and run(
         tally, f"{preset}: build", ["cmake", "--build", "--preset", preset, "--parallel", str(JOBS), "--target", *targets]
     )
@@ -77,6 +84,14 @@ def read_junit(tally, step, report):
     return len(tally.failed) - failed
 
 
+def print_slowest(report):
+    """The tests of a ctest JUnit file that took longest, batches among them."""
+    tests = ElementTree.parse(report).getroot().iter("testcase")
+    slowest = sorted(((float(test.get("time", 0)), test.get("name")) for test in tests), reverse=True)
+    for seconds, name in slowest[:SHOWN_CASES]:
+        print(f"    {seconds:6.1f} s  {name}")
+
+
 def test(tally, preset, *selection, batches=True, **environment):
     """Runs the tests of a built preset, each test case being an item; several cases of a program to a process, or one."""
     step = f"{preset}: tests"
@@ -92,6 +107,7 @@ def test(tally, preset, *selection, batches=True, **environment):
     status = subprocess.run(command, cwd=ROOT, env={**os.environ, **environment}, check=False).returncode
     try:
         failures = read_junit(tally, step, report)
+        print_slowest(report)
     except (OSError, ElementTree.ParseError) as error:
         tally.failed.append(f"{step}: no readable result ({error})")
         failures = 1
@@ -123,8 +139,9 @@ def step_python(tally):
 
 
 def step_long(tally):
+    """Long tests, and those against Mitsuba with pictures rendered here in place of committed means."""
     if build(tally, "release"):
-        test(tally, "release", "--label-regex", "^long$", batches=False)
+        test(tally, "release", "--label-regex", "^(long|oracle)$", batches=False, ORACLE_LIVE="1")
 
 
 def step_thorough(tally):

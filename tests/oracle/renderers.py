@@ -62,12 +62,12 @@ class MitsubaScene:
     def render(self, spp, seeds):
         return render_mitsuba(self.mitsuba, self.scene, self.integrator, spp, seeds)
 
-    def kept(self, spp, seeds):
-        """What render() returns, or has returned in an earlier run."""
+    def kept(self, spp, seeds, case=None):
+        """What render() returns or has returned; if committed for the case, pictures with the same means of tiles."""
         versions = [importlib.metadata.version(package) for package in ("mitsuba", "drjit")]
         blend = pathlib.Path(exact_blend.__file__).read_text(encoding="utf-8")
         name = picture_cache.name_of(self.text, self.path, spp, list(seeds), versions, blend)
-        return picture_cache.kept(name, lambda: self.render(spp, seeds))
+        return picture_cache.kept(name, lambda: self.render(spp, seeds), case)
 
     def read_exr(self, path):
         bitmap = self.mitsuba.Bitmap(str(path))

@@ -3,6 +3,7 @@
 import functools
 import os
 import pathlib
+import re
 import tempfile
 import unittest
 from unittest import mock
@@ -11,6 +12,7 @@ import numpy as np
 from scipy import stats
 
 import image_statistics
+import oracle_test
 import picture_cache
 import renderers
 
@@ -93,9 +95,16 @@ class Kept(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="wavecrest_oracle_")
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        variables = mock.patch.dict(os.environ, {"XDG_CACHE_HOME": folder.name})
-        variables.start()
-        self.addCleanup(variables.stop)
+        variables = mock.patch.dict(os.environ, {"XDG_CACHE_HOME": folder.name, "ORACLE_LIVE": "", "ORACLE_COMMIT": ""})
+        committed = mock.patch.object(picture_cache, "COMMITTED", self.folder / "committed")
+        for patch in (variables, committed):
+            patch.start()
+            self.addCleanup(patch.stop)
+
+    @staticmethod
+    def commit(name, pictures, case):
+        with mock.patch.dict(os.environ, {"ORACLE_COMMIT": "1"}):
+            return picture_cache.kept(name, lambda: pictures, case)
 
     def test_they_are_rendered_once_unless_damaged(self):
         render = mock.Mock(return_value=np.arange(6, dtype=np.float32).reshape(1, 1, 2, 3))
@@ -119,6 +128,71 @@ class Kept(unittest.TestCase):
         self.assertEqual(name("b", "one", 64, [1, 2]), first)
         others = {name("a", "two", 64, [1, 2]), name("a", "one", 32, [1, 2]), name("a", "one", 64, [1])}
         self.assertEqual(len(others - {first}), 3)
+
+    def test_committed_tiles_get_the_verdict_of_the_pictures(self):
+        generator = np.random.default_rng(7)
+        noisy = noise(generator, 16, (20, 27, 3)).astype(np.float32)  # parts of tiles at two sides
+        still = noisy[:1].repeat(16, 0)
+        pairs = (
+            (noisy, noise(generator, 16, (20, 27, 3))),
+            (noisy, noise(generator, 16, (20, 27, 3)) + 0.1),
+            (still, still * np.float64(1 + 1e-6)),
+            (still, still * np.float64(1 + 1e-3)),
+        )
+        for i, (pictures, ours) in enumerate(pairs):
+            with self.subTest(i):
+                self.commit(f"name-{i}", pictures, f"case-{i}")
+                committed = picture_cache.kept(f"name-{i}", self.fail, f"case-{i}")
+                self.assertTrue((committed[:, :8, :8] == committed[:, :1, :1]).all(), "not the committed tiles")
+                expected, found = (image_statistics.compare(ours, theirs) for theirs in (pictures, committed))
+                self.assertEqual((found.equal, expected.equal), (i % 2 == 0, i % 2 == 0))
+                # Float32 rounds means by 6e-8, the standard deviation of z is 1e-5 of them and more.
+                np.testing.assert_allclose(found.tile_z, expected.tile_z, rtol=0, atol=0.01)
+                np.testing.assert_allclose(found.mean_z, expected.mean_z, rtol=0, atol=0.01)
+                np.testing.assert_allclose(found.relative_difference, expected.relative_difference, rtol=0, atol=1e-6)
+
+    def test_committed_tiles_are_those_of_one_name_and_left_out_on_request(self):
+        first, second = noise(np.random.default_rng(8), 2, (2, 8, 8, 3)).astype(np.float32)
+        self.commit("first", first, "case")
+        np.testing.assert_array_equal(picture_cache.kept("second", lambda: second, "case"), second)
+        self.assertFalse((picture_cache.kept("first", self.fail, "case") == first).any())
+        np.testing.assert_array_equal(picture_cache.kept("first", self.fail), first)
+        with mock.patch.dict(os.environ, {"ORACLE_LIVE": "1"}):
+            np.testing.assert_array_equal(picture_cache.kept("first", self.fail, "case"), first)
+        self.commit("second", second, "case")
+        self.assertFalse((picture_cache.kept("second", self.fail, "case") == second).any())
+
+    def test_where_committed_tiles_differ_pictures_decide_and_are_the_evidence(self):
+        generator = np.random.default_rng(9)
+        ours, theirs = noise(generator, 16), noise(generator, 16)
+        mitsuba = mock.Mock()
+        renders = {"render_seeds": mock.Mock(return_value=ours), "render_wavecrest": mock.Mock(return_value=ours[0])}
+        case = oracle_test.Case("case", pathlib.Path("case.xml"), 1, ["pt"])
+        for pictures, equal in ((theirs, True), (theirs + 1, False)):
+            mitsuba.kept.return_value = pictures
+            with mock.patch.multiple(renderers, **renders):
+                found = oracle_test.same_picture(mock.Mock(), case, "pt", mitsuba, theirs + 2, self.folder)
+            self.assertEqual(found, equal)
+        written = {call.args[0].name: call.args[1] for call in mitsuba.write_exr.call_args_list}
+        np.testing.assert_array_equal(written["mitsuba.exr"], pictures.mean(0))
+
+
+class Committed(unittest.TestCase):
+    """The files that are committed."""
+
+    def test_each_is_of_one_case(self):
+        cases = [case.name for case in oracle_test.read_cases()]
+        self.assertEqual(len(set(cases)), len(cases))
+        files = {file.name for file in picture_cache.COMMITTED.glob("*")}
+        self.assertLessEqual(files, {f"{case}.npz" for case in cases})
+
+    def test_no_name_depends_on_where_the_clone_lies(self):
+        def without_files(text):  # of which name_of reads the content
+            return re.sub(r'"(/[^"]+)"', lambda found: '"file"' if os.path.isfile(found[1]) else found[0], text)
+
+        for case in oracle_test.read_cases():
+            text = renderers.scene_xml.flatten(case.reference, size=case.size)
+            self.assertNotIn(str(renderers.ROOT), without_files(text), case.name)
 
 
 class MitsubaAgainstItself(unittest.TestCase):

@@ -1,8 +1,12 @@
-"""tools/run_checks.py: no step of ./check builds what an earlier one has left in the cache of its build folder."""
+"""tools/run_checks.py: steps configure all that an earlier one may have left in the build folder, and tell their times."""
 
+import contextlib
+import io
 import pathlib
 import re
 import sys
+import tempfile
+import types
 import unittest
 from unittest import mock
 
@@ -11,15 +15,19 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
 import run_checks  # noqa: E402  (the path has to be set first)
 
 
-def configurations(steps):
-    """The options of each time that the steps configure build/release, by name."""
-    with mock.patch.object(run_checks, "run", return_value=True) as run, mock.patch.object(run_checks, "test"):
+def calls_of(steps):
+    """What the steps run, and how they call test()."""
+    with mock.patch.object(run_checks, "run", return_value=True) as run, mock.patch.object(run_checks, "test") as test:
         for step in steps:
             step(run_checks.Tally())
-    commands = [call.args[2] for call in run.call_args_list]
+    return [list(map(str, call.args[2])) for call in run.call_args_list], test.call_args_list
+
+
+def configurations(steps):
+    """The options of each time that the steps configure build/release, by name."""
     return [
-        dict(re.findall(r"-D(WAVECREST_\w+)=(\S+)", " ".join(map(str, command))))
-        for command in commands
+        dict(re.findall(r"-D(WAVECREST_\w+)=(\S+)", " ".join(command)))
+        for command in calls_of(steps)[0]
         if command[:3] == ["cmake", "--preset", "release"]
     ]
 
@@ -35,6 +43,40 @@ class Options(unittest.TestCase):
         self.assertEqual((options["WAVECREST_SHARED"], options["WAVECREST_PYTHON"]), ("ON", "OFF"))
         (options,) = configurations([run_checks.step_python])
         self.assertEqual(options["WAVECREST_PYTHON"], "ON")
+
+    def test_a_compiler_cache_is_for_the_environment_to_choose(self):
+        with mock.patch("shutil.which", return_value="/usr/bin/ccache"):
+            commands, _ = calls_of(run_checks.STEPS.values())
+        self.assertNotIn("LAUNCHER", str(commands))
+
+    def test_long_tests_render_mitsubas_pictures(self):
+        _, (test,) = calls_of([run_checks.step_long])
+        self.assertEqual(test.kwargs["ORACLE_LIVE"], "1")
+        for label in ("long", "oracle"):
+            self.assertRegex(label, test.args[-1])
+
+
+class Times(unittest.TestCase):
+    def said(self, function, *arguments):
+        with contextlib.redirect_stdout(io.StringIO()) as out:
+            function(*arguments)
+        return out.getvalue().splitlines()
+
+    def test_each_step_says_how_many_cores_it_kept_busy(self):
+        tally = run_checks.Tally()
+        for user, system, cores in ((12, 3, "1.5"), (20, 3, "0.8"), (20, 3, "0.0")):
+            times = types.SimpleNamespace(children_user=user, children_system=system)
+            with mock.patch("os.times", return_value=times), mock.patch("time.monotonic", return_value=110):
+                self.assertEqual(self.said(tally.end, "a", 100, "done"), [f"=== a: done in 10 s, {cores} cores busy"])
+
+    def test_the_slowest_tests_come_first_and_the_others_not_at_all(self):
+        cases = "".join(f'<testcase name="case {i}" time="{i / 2}"/>' for i in range(30))
+        with tempfile.TemporaryDirectory(prefix="wavecrest_run_checks_") as folder:
+            report = pathlib.Path(folder) / "junit.xml"
+            report.write_text(f"<testsuite>{cases}</testsuite>")
+            lines = self.said(run_checks.print_slowest, report)
+        self.assertEqual(lines[0].split(), ["14.5", "s", "case", "29"])
+        self.assertEqual(lines[-1].split(), ["5.0", "s", "case", "10"])
 
 
 if __name__ == "__main__":
