@@ -162,8 +162,8 @@ void refuseOptionsOfOtherModes(const BenchOptions& options, std::string_view mod
   }
 }
 
-// Refuses what modes that measure nothing would ignore, and a scene on stdin where other processes render it. Throws
-// UsageError.
+// Refuses what modes that measure nothing would ignore, threads where there is one, and a scene on stdin where other
+// processes render it. Throws UsageError.
 void refuseWhatModeIgnores(const BenchOptions& options, std::string_view mode) {
   if (mode == "--compare" || mode == "--machines") {
     const bool measures =
@@ -172,6 +172,9 @@ void refuseWhatModeIgnores(const BenchOptions& options, std::string_view mode) {
       throw UsageError(
           fmt::format("{} measures nothing; expected no scenes, --methods, --duration, --size or --threads", mode));
     }
+  }
+  if (mode == "--specialization" && options.threads > 1) {
+    throw UsageError("--specialization renders on one thread; expected no --threads");
   }
   const bool starts = mode == "--against" || mode == "--scaling";
   if (starts && std::find(options.scenes.begin(), options.scenes.end(), kStandardStream) != options.scenes.end()) {
@@ -202,7 +205,8 @@ void forgetBenchVariables(BenchOptions& options, const Command& command) {
   const bool measures = mode != "--compare" && mode != "--machines";
   const bool takesSize = measures && mode != "--score" && mode != "--extremes";
   if (!takesSize && command.fromVariable("--size")) options.size.clear();
-  if (!measures && command.fromVariable("--threads")) options.threads = 0;
+  const bool takesThreads = measures && mode != "--specialization";
+  if (!takesThreads && command.fromVariable("--threads")) options.threads = 0;
 }
 
 int runBench(const BenchOptions& options) {
@@ -220,7 +224,9 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   const Command command = program.add("bench", "measure speed, where it goes, and what it buys");
   // Options of several modes.
   command.add("scenes", options->scenes, "built-in scenes or XML files; default: two Cornell boxes");
-  command.add("--methods", options->methods, "methods, separated by commas; default: all")
+  command
+      .add("--methods", options->methods,
+           "methods, separated by commas; default: all but evcm; of --specialization pt,vcm; of --score its seven")
       .separatedByCommas()
       .repeatable();
   command.add("--duration", options->duration,
@@ -228,7 +234,9 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
               "--tradeoff 60s");
   command.add("--json", options->json, "write all figures as JSON; -: to stdout, instead of the tables");
   command.add("--size", options->size, "film size, WIDTHxHEIGHT");
-  command.add("--threads", options->threads, "most threads; default: all cores, of --against and --tradeoff one")
+  command
+      .add("--threads", options->threads,
+           "most threads; default: all cores; of --against, --tradeoff and --specialization one")
       .between(kThreadRange);
   command.addFlag("--pin", options->pin,
                   "bind threads to cores and spread shared memory over their nodes; not with the modes below");
@@ -257,7 +265,7 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
            "scores of several machines beside each other: files of --score --json, or folders of them")
       .repeatable();
   command.addFlag("--specialization", options->specialization,
-                  "kernels for what a scene has against those that render everything: image, speed, memory, code");
+                  "kernels for what a scene has against those that render everything: image, speed, bytes per path");
   command.addFlag("--tradeoff", options->tradeoff,
                   "speed, noise, bias and memory of every setting that buys one for another");
   command

@@ -1,6 +1,4 @@
 // wavecrest bench --scaling: how methods grow with threads.
-#include <fmt/core.h>
-
 #include <nlohmann/json.hpp>
 
 #include "bench/scaling/scaling.h"

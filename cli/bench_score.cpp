@@ -45,8 +45,9 @@ std::vector<ScoreEntry> chosenEntries(const BenchOptions& options, ScoreSize siz
     const bool known =
         std::any_of(entries.begin(), entries.end(), [&](const ScoreEntry& entry) { return entry.method == method; });
     if (known) continue;
-    throw UsageError(fmt::format("--score {}: has no method {}; expected none, or some of the study's", options.score,
-                                 toString(method)));
+    throw UsageError(
+        fmt::format("--score {}: has no method {}; expected none, or some of pt, lt, bpt, mlt, ppm, bpm, vcm",
+                    options.score, toString(method)));
   }
   std::erase_if(entries, [&](const ScoreEntry& entry) {
     return !contains(methods, entry.method) || (!options.scenes.empty() && !contains(options.scenes, entry.scene));

@@ -1,6 +1,4 @@
 // wavecrest bench --specialization: every feature set against the complete kernels. Exit code 4 if an image differs.
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,4 @@
 // wavecrest bench without a mode: how fast the methods are on this machine, where the time goes, and what it buys.
-#include <fmt/core.h>
-
 #include <nlohmann/json.hpp>
 
 #include "bench/throughput/bench_scene.h"

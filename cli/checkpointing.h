@@ -5,7 +5,6 @@
 // the render ends; it stays behind, so that a render can go on to more iterations or more time.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <memory>
 #include <mutex>

@@ -246,7 +246,11 @@ void addCompareCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<CompareOptions>();
   command.add("REFERENCE", options->reference, "EXR, PFM, HDR or PNG").required();
   command.add("TEST", options->tests, "images of the same size").required();
-  command.add("--metrics", options->metrics, "which of " + metricNames()).separatedByCommas().repeatable();
+  command
+      .add("--metrics", options->metrics,
+           "which of " + metricNames() + "; default: all but hdrflip that the image is large enough for")
+      .separatedByCommas()
+      .repeatable();
   command.addFlag("--json", options->json, "print one JSON object; of several tests an array of them");
   command.add("--map", options->mapFolder, "write a false-colour PNG of each metric into this folder");
   command.add("--html", options->html, "write scores, images and maps as one page; - for stdout");

@@ -89,7 +89,9 @@ std::string manPage(const CLI::App& program, const std::vector<CommandFacts>& co
       ".SH EXIT STATUS\n0 done; 1 internal failure; 2 wrong usage; 3 bad input; 4 a check that was asked for did not "
       "hold; 130 interrupted after saving.\n"
       ".SH ENVIRONMENT\n.TP\n\\fBWAVECREST_SCENES\\fR\nfolder of the built\\-in scenes\n"
-      ".TP\n\\fBWAVECREST_MPI\\fR\noff: processes of mpirun or srun do not share a render\n";
+      ".TP\n\\fBWAVECREST_MPI\\fR\noff: processes of mpirun or srun do not share a render\n"
+      ".TP\n\\fBWAVECREST_MAX_IMAGE\\fR\nmost memory of an image that is read, as 8G; default: 2G; images up "
+      "to 16 times their file are always read\n";
   for (const auto& [option, variable] : kVariables) {
     page += fmt::format(".TP\n\\fB{}\\fR\nvalue of {} where neither arguments nor settings file have one\n",
                         roff(variable), roff(option));

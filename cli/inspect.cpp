@@ -105,11 +105,11 @@ void printMerging(const SceneInspection& facts) {
 void printClasses(const PathClassTable& table) {
   fmt::print("\npaths from light to eye (A lamp or sky, P point, spot or sun, D diffuse or rough, S smooth, E eye)\n");
   fmt::print("{:<16}", "class");
-  for (const Method method : table.methods) fmt::print(" {:<11}", toString(method));
+  for (const MethodEntry& entry : kMethods) fmt::print(" {:<11}", entry.name);
   fmt::print("\n");
   for (const PathClass& pathClass : table.classes) {
     fmt::print("{:<16}", pathClass.signature);
-    for (const Method method : table.methods) fmt::print(" {:<11}", name(table.verdict(pathClass, method)));
+    for (const MethodEntry& entry : kMethods) fmt::print(" {:<11}", name(table.verdict(pathClass, entry.method)));
     fmt::print(" {}\n", pathClass.description);
   }
   fmt::print("\nreference   {}{}: {}\n", toString(table.reference.method), table.reference.biased ? " (biased)" : "",

@@ -1,13 +1,10 @@
 #include "cli/inspect_guide.h"
 
 #include <fmt/core.h>
-#include <strings.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -24,13 +21,8 @@ namespace {
 constexpr uint32_t kWidth = 256, kHeight = 128;
 
 std::array<uint32_t, 2> parsePixel(const std::string& text, uint32_t width, uint32_t height) {
-  std::array<uint32_t, 2> pixel{};
-  const char* const end = text.data() + text.size();
-  const auto [comma, first] = std::from_chars(text.data(), end, pixel[0]);
-  if (first == std::errc() && comma != end && *comma == ',') {
-    const auto [rest, second] = std::from_chars(comma + 1, end, pixel[1]);
-    if (second == std::errc() && rest == end && pixel[0] < width && pixel[1] < height) return pixel;
-  }
+  const auto pixel = parsePair(text, ',');
+  if (pixel && (*pixel)[0] < width && (*pixel)[1] < height) return *pixel;
   throw UsageError(
       fmt::format("--guide '{}': no pixel of the image; expected X,Y up to {},{}", text, width - 1, height - 1));
 }
@@ -74,8 +66,7 @@ void writeGuidePicture(const Scene& scene, RenderSettings settings, const GuideO
       "pixel {},{}: cell {} of {}, after {} iterations; the guide draws {:.0f} % of directions, at most {:.3g} a "
       "steradian\n",
       x, y, learned->cell, learned->cells, session->statistics().iterations, 100 * learned->guidedShare, greatest);
-  // As writeImage goes by the extension.
-  if (strcasecmp(std::filesystem::path(file).extension().c_str(), ".png") == 0 && greatest > 0) {
+  if (extensionOf(file) == ".png" && greatest > 0) {
     for (float& value : picture.pixels) value /= greatest;
   }
   writeImage(file, picture);

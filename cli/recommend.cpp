@@ -29,11 +29,10 @@ struct RecommendOptions {
 
 void runRecommend(const RecommendOptions& options) {
   // Options are checked before the scene is loaded.
-  const RecommendRequest request{
-      .targetSsim = options.targetSsim,
-      .seconds = parseDuration("--budget", options.budget),
-      .methods = parseMethodList(options.methods),
-      .clock = static_cast<PilotClock>(parseChoice("--clock", options.clock, kPilotClockNames))};
+  const RecommendRequest request{.targetSsim = options.targetSsim,
+                                 .seconds = parseDuration("--budget", options.budget),
+                                 .methods = parseMethodList(options.methods),
+                                 .clock = static_cast<ClockKind>(parseChoice("--clock", options.clock, kClockNames))};
   const Scene scene = loadScene(options.scene);
   const uint32_t width = scene.film.imageWidth(), height = scene.film.imageHeight();
   // The target is an SSIM, so the film must be large enough for one.
@@ -60,7 +59,7 @@ void addRecommendCommand(CommandLine& program, int& exitCode) {
   addSceneOptions(command, options->scene);
   command.add("--target-ssim", options->targetSsim, "quality to get to").showDefault().between(0.01, 0.9999);
   command.add("--budget", options->budget, "render time of the pilots together").showDefault();
-  command.add("--methods", options->methods, "methods, separated by commas; default: all")
+  command.add("--methods", options->methods, "methods, separated by commas; default: all but evcm")
       .separatedByCommas()
       .repeatable();
   command.add("--clock", options->clock, "what a second is: wall, or cpu over threads for a busy machine")

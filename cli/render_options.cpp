@@ -43,7 +43,9 @@ void addMethodOptions(const Command& command, RenderOptions& options) {
   command.add("--bootstrap", options.bootstrap, "independent samples from which chains start")
       .showDefault()
       .between(kBootstrapRange);
-  command.add("--restart", options.restart, "steps before chains start anew; default: 16 mutations to a sample")
+  command
+      .add("--restart", options.restart,
+           "steps before chains start anew; default: such that chains make 16 mutations for each bootstrap sample")
       .between(kRestartRange);
   command.addFlag("--no-direct-pass", options.noDirectPass, "mmlt and pathspace: chains render direct light too");
 }
@@ -78,7 +80,7 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command
       .add("--roulette", options.roulette,
            "what decides whether a walk goes on: throughput, albedo, or efficiency: throughput in the method's "
-           "proportion")
+           "proportion, of gpt with a guide what paths have been worth")
       .showDefault();
   // Kernels and intersector.
   command.add("--precision", options.precision, "float or double").showDefault();

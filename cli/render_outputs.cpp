@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <exception>
@@ -43,13 +42,7 @@ bool isSnapshotOf(const std::string& image, const std::string& file) {
          fs::weakly_canonical(fs::absolute(file), ignored);
 }
 
-// As writeImage goes by the extension.
-bool isPng(const std::string& file) {
-  std::string extension = fs::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".png";
-}
+bool isPng(const std::string& file) { return extensionOf(file) == ".png"; }
 
 // The image brighter by so many stops.
 Image exposed(Image image, double stops) {

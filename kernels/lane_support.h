@@ -29,6 +29,11 @@ template <class Real>
 WAVECREST_INLINE Real reciprocalSqrt(Real a) {
   return Real(1) / sqrt(a);
 }
+// Of linear sRGB.
+template <class Real>
+WAVECREST_INLINE Real luminanceOf(Vec3<Real> c) {
+  return mulAdd(c.x, Real(0.2126f), mulAdd(c.y, Real(0.7152f), c.z * Real(0.0722f)));
+}
 
 // ---- columns --------------------------------------------------------------------------------------------------------
 
@@ -78,6 +83,16 @@ WAVECREST_INLINE void appendVec3(Vec3<Real> a, Mask m, const Column<S>& x, const
   append(a.x, m, x, out);
   append(a.y, m, y, out);
   append(a.z, m, z, out);
+}
+
+// Appends shadow rays from origin to end where m holds, but not ShadowRays::others.
+template <class Real, class S>
+WAVECREST_INLINE void appendShadowRays(const ShadowRays<S>& shadow, Mask m, Vec3<Real> origin, Vec3<Real> end,
+                                       Vec3<Real> contribution, UInt target, size_t out) {
+  appendVec3(to<Float>(origin), m, shadow.originX, shadow.originY, shadow.originZ, out);
+  appendVec3(to<Float>(end - origin), m, shadow.directionX, shadow.directionY, shadow.directionZ, out);
+  appendVec3(contribution, m, shadow.red, shadow.green, shadow.blue, out);
+  append(target, m, shadow.target, out);
 }
 
 // Stores the lanes of a where m holds, each at its index; no index comes twice.

@@ -6,7 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "metrics/image/srgb.h"
 #include "metrics/rmse.h"
 
 namespace wavecrest {

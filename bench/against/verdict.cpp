@@ -20,27 +20,11 @@ std::vector<double> logarithms(std::span<const double> values) {
 // largest loss that the tolerance allows.
 double shift(double medianLog, const FamilyLevel& family) { return medianLog < 0 ? -std::log1p(-family.tolerance) : 0; }
 
-double sign(double value) { return value > 0 ? 1.0 : value < 0 ? -1.0 : 0.0; }
-
-// The positive minus the negative sum of the signed-rank test: pairs of values, each with itself too, whose sum is
-// positive, less those whose sum is negative (Tukey 1949). Values of 0 are left out.
-double signedRankSum(std::span<const double> values) {
-  double sum = 0;
-  for (size_t i = 0; i < values.size(); ++i) {
-    for (size_t k = 0; k <= i; ++k) {
-      if (values[i] != 0 && values[k] != 0) sum += sign(values[i] + values[k]);
-    }
-  }
-  return sum;
-}
-
-// Pairs of values where b's is larger, less those where a's is.
-double rankSumOver(std::span<const double> a, std::span<const double> b) {
-  double sum = 0;
-  for (const double x : a) {
-    for (const double y : b) sum += sign(y - x);
-  }
-  return sum;
+// Within the tolerance there is nothing to reject, however sure the small loss is. The verdict's side is the median's:
+// ranks that weigh more on the other side say nothing for it.
+double probabilityOf(double medianLog, const FamilyLevel& family, const RankTest& test) {
+  const bool tolerated = medianLog < 0 && medianLog + shift(medianLog, family) >= 0;
+  return medianLog * test.side > 0 && !tolerated ? test.probability : 1;
 }
 
 // From logarithms back to ratios of speed.
@@ -66,11 +50,7 @@ Comparison comparePaired(std::span<const double> ours, std::span<const double> o
   const double middle = median(gains);
   const Interval interval = bootstrapMedian(gains);
   for (double& gain : gains) gain += shift(middle, family);
-  // Within the tolerance there is nothing to reject, however sure the small loss is.
-  const bool tolerated = middle < 0 && middle + shift(middle, family) >= 0;
-  // The verdict's side is the median's, so ranks that weigh more on the other side say nothing for it.
-  const bool agree = middle * signedRankSum(gains) > 0;
-  return fromLogs(middle, interval, agree && !tolerated ? signedRankProbability(gains) : 1);
+  return fromLogs(middle, interval, probabilityOf(middle, family, signedRankTest(gains)));
 }
 
 Comparison compareUnpaired(std::span<const double> ours, std::span<const double> other, const FamilyLevel& family) {
@@ -93,9 +73,7 @@ Comparison compareUnpaired(std::span<const double> ours, std::span<const double>
   const Interval interval{at(0.5 * (1 - kIntervalLevel)), at(0.5 * (1 + kIntervalLevel))};
   // A shift of the logarithmic speedup is a shift of our times in the opposite direction.
   for (double& value : own) value -= shift(middle, family);
-  const bool tolerated = middle < 0 && middle + shift(middle, family) >= 0;
-  const bool agree = middle * rankSumOver(own, theirs) > 0;
-  return fromLogs(middle, interval, agree && !tolerated ? rankSumProbability(own, theirs) : 1);
+  return fromLogs(middle, interval, probabilityOf(middle, family, rankSumTest(own, theirs)));
 }
 
 void judge(std::span<Comparison* const> comparisons, const FamilyLevel& family) {

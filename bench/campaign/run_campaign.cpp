@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +10,8 @@
 #include "bench/campaign/environment.h"
 #include "bench/campaign/file_lock.h"
 #include "bench/campaign/measured_run.h"
+#include "bench/campaign/pace.h"
+#include "bench/campaign/run_settings.h"
 #include "bench/campaign/scene_reference.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
@@ -18,62 +19,13 @@
 #include "engine/inspect/path_classes.h"
 #include "engine/load/load.h"
 #include "engine/scene/hash_text.h"
+#include "engine/session/render_clock.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-// The methods of a scene that this shard does. scene: its index. Groups of scene and method are counted through and
-// dealt to the shards in turn.
-std::vector<CampaignMethod> methodsOfShard(const CampaignSettings& settings, size_t scene) {
-  std::vector<CampaignMethod> methods;
-  for (size_t i = 0; i < settings.methods.size(); ++i) {
-    const size_t group = scene * settings.methods.size() + i;
-    if (group % settings.shard.count == settings.shard.index - 1) methods.push_back(settings.methods[i]);
-  }
-  return methods;
-}
-
-// Estimates the time left from the wall time that finished work took. Work is counted in render seconds. Where
-// iterations are counted, a run is one unit, as all runs are taken for equally long.
-class Pace {
- public:
-  explicit Pace(const CampaignSettings& settings) : settings_(settings) {}
-
-  // Units of work: of a run, and of rendering a reference.
-  double ofRun(const CampaignScene& scene) const { return settings_.iterations ? 1 : scene.effort.seconds; }
-  double ofReference(const CampaignScene& scene) const { return kReferenceEffort * ofRun(scene); }
-
-  // ahead: work of all runs and references that are missing.
-  void begin(const CampaignPlan& plan, double ahead) {
-    progress_ = {.done = plan.done, .total = plan.runs};
-    ahead_ = ahead;
-  }
-  // Takes a finished run into account. wallSeconds: what it took, measuring included.
-  const CampaignProgress& finish(const CampaignScene& scene, double wallSeconds) {
-    ++progress_.done;
-    pass(ofRun(scene), wallSeconds);
-    progress_.secondsLeft = ahead_ * wallSeconds_ / passed_;
-    return progress_;
-  }
-  void finishReference(const CampaignScene& scene, double wallSeconds) { pass(ofReference(scene), wallSeconds); }
-
- private:
-  void pass(double charged, double wallSeconds) {
-    ahead_ -= charged;
-    passed_ += charged;
-    wallSeconds_ += wallSeconds;
-  }
-
-  const CampaignSettings& settings_;
-  CampaignProgress progress_;
-  double ahead_ = 0, passed_ = 0, wallSeconds_ = 0;
-};
 
 // A campaign in one process. Its steps are described in the header.
 class Campaign {
@@ -311,18 +263,19 @@ class Campaign {
       for (const CampaignMethod& method : methods) {
         if (isDone(entry, method, seed)) continue;
         const auto begin = Clock::now();
-        const std::optional<RunRecord> run = measuredRun({.scene = scene,
-                                                          .settings = runSettings(entry, scene, method, seed),
-                                                          .schedule = schedule(entry),
-                                                          .reference = prepared,
-                                                          .halves = &reference,
-                                                          .row = method.name(),
-                                                          .out = settings_.out,
-                                                          .keepImages = settings_.keepImages,
-                                                          .checkpoint = checkpointFile(settings_, entry, method, seed),
-                                                          .say = hooks_.say,
-                                                          .loadSeconds = loadSeconds},
-                                                         hooks_.session);
+        const std::optional<RunRecord> run =
+            measuredRun({.scene = scene,
+                         .settings = runSettings(settings_, entry, scene, method, seed),
+                         .schedule = snapshotSchedule(settings_, entry),
+                         .reference = prepared,
+                         .halves = &reference,
+                         .row = method.name(),
+                         .out = settings_.out,
+                         .keepImages = settings_.keepImages,
+                         .checkpoint = checkpointFile(settings_, entry, method, seed),
+                         .say = hooks_.say,
+                         .loadSeconds = loadSeconds},
+                        hooks_.session);
         if (!run) return false;
         store(*run, knownRun(entry, method, seed));
         const CampaignProgress& progress = pace_.finish(entry, secondsSince(begin));
@@ -344,39 +297,6 @@ class Campaign {
       std::error_code ignored;  // of files that are gone already
       if (!kept) fs::remove(settings_.out / image, ignored);
     }
-  }
-
-  // The settings of a run: the campaign's, with the method, the seed and the end of the run. Light paths apply to
-  // methods that merge only.
-  RenderSettings runSettings(const CampaignScene& entry, const Scene& scene, const CampaignMethod& method,
-                             uint64_t seed) const {
-    RenderSettings render = settings_.render;
-    render.method = method.method;
-    if (method.automatic) {
-      takeProgramDefaults(render);
-      render.radiusAlpha = RenderSettings().radiusAlpha;
-      render.lightPaths.reset();
-    }
-    render.samplerIsChosen = !method.automatic && settings_.sampler.has_value();
-    render.sampler = method.automatic ? bestSampler(render) : settings_.sampler.value_or(bestSampler(render));
-    render.metropolis.variant = method.variant;
-    render.directPass = method.directPass;
-    if (!strategiesOf(method.method).merge) render.lightPaths.reset();
-    render.seed = seed;
-    render.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
-    render.measureStages = true;
-    render.iterations = settings_.iterations;
-    if (!settings_.iterations) render.seconds = entry.effort.seconds;
-    return render;
-  }
-
-  // Snapshots of a run: after 1, 2, 4, ... iterations, or by time as the effort says.
-  SnapshotSchedule schedule(const CampaignScene& entry) const {
-    if (settings_.iterations) return SnapshotSchedule::doubling();
-    const double interval = entry.effort.snapshotSeconds;
-    if (!(interval > 0)) return SnapshotSchedule::logarithmic();
-    return entry.effort.logarithmicFirst ? SnapshotSchedule::logarithmicThenEvery(interval)
-                                         : SnapshotSchedule::every(interval);
   }
 
   // Takes the error of each method apart into variance and bias, once all its seeds are done. Methods whose stored

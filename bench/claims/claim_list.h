@@ -6,7 +6,6 @@
 // (ClaimNeeds).
 #pragma once
 
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>

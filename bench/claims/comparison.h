@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "bench/claims/judge_claims.h"
 #include "bench/statistics/bands.h"
@@ -20,8 +21,14 @@ struct Comparison {
 Comparison above(const Band& band, double limit, std::string text);
 Comparison below(const Band& band, double limit, std::string text);
 
-// The weight of a verdict in a conjunction, where the heaviest verdict decides.
-int weightOf(ClaimVerdict verdict);
+// The comparison of the opposite question: a verdict that is decided turns round.
+Comparison negated(Comparison c);
+
+// Of several, at least one: those that hold come first, by how clearly they do; those that fail come last.
+Comparison best(const std::vector<Comparison>& all);
+Comparison worst(const std::vector<Comparison>& all);
+// The comparison in the middle. It holds where more than half of all do.
+Comparison middle(std::vector<Comparison> all);
 
 // The geometric mean of numbers whose logarithms are given.
 double meanOfLog(std::span<const double> logarithms);

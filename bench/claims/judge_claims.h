@@ -9,7 +9,6 @@
 // difference.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "bench/claims/claim_list.h"
@@ -17,7 +16,8 @@
 
 namespace wavecrest {
 
-enum class ClaimVerdict { holds, fails, notReached, undecided, notJudged };
+// From the lightest to the heaviest: the heaviest decides a conjunction.
+enum class ClaimVerdict { holds, undecided, notJudged, notReached, fails };
 std::string_view toString(ClaimVerdict verdict);  // as in the results file's claim table
 
 ClaimRecord judgeClaim(const Claim& claim, const CampaignResults& results);

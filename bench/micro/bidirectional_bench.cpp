@@ -9,13 +9,12 @@
 #include <fmt/core.h>
 
 #include <bit>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <random>
 
+#include "bench/machine/cpu_timer.h"
 #include "bench/micro/registration.h"
-#include "bench/throughput/cpu_timer.h"
 #include "engine/film/splat_films.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"

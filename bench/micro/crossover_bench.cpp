@@ -12,9 +12,9 @@
 #include <memory>
 #include <random>
 
+#include "bench/machine/cpu_timer.h"
 #include "bench/micro/registration.h"
 #include "bench/micro/wave_agreement.h"
-#include "bench/throughput/cpu_timer.h"
 #include "bench/throughput/wave_capture.h"
 
 namespace wavecrest {

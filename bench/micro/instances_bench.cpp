@@ -7,11 +7,10 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <memory>
 #include <numbers>
 
+#include "bench/machine/cpu_timer.h"
 #include "bench/micro/registration.h"
-#include "bench/throughput/cpu_timer.h"
 #include "bench/throughput/wave_capture.h"
 
 namespace wavecrest {

@@ -13,7 +13,6 @@
 #include "metrics/cvvdp/cvvdp.h"
 #include "metrics/flip.h"
 #include "metrics/hdrvdp2/hdrvdp2.h"
-#include "metrics/image/srgb.h"
 #include "metrics/ms_ssim.h"
 #include "metrics/planes/fft.h"
 #include "metrics/planes/plane.h"
@@ -88,16 +87,10 @@ void msssim(benchmark::State& state) {
 }
 BENCHMARK(msssim)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-Image lightOf(const Image8& codes) {
-  Image light{codes.width, codes.height, 3, {}};
-  for (const uint8_t code : codes.pixels) light.pixels.push_back(static_cast<float>(srgbDecodeTable()[code]));
-  return light;
-}
-
 void pu21(benchmark::State& state) {
   const auto& pair = roomPair();
-  const PreparedPu21 prepared(lightOf(pair.reference));
-  const Image test = lightOf(pair.test);
+  const PreparedPu21 prepared(test::lightOf(pair.reference));
+  const Image test = test::lightOf(pair.test);
   if (!checkScore(state, prepared.psnr(test).colour, test::goldenFigure("pu21.json", pair.name, "psnr"), 1e-4)) return;
   if (!checkScore(state, prepared.ssim(test).mean, test::goldenFigure("pu21.json", pair.name, "ssim"), 1e-4)) return;
   for (auto _ : state) {

@@ -12,11 +12,10 @@
 #include <map>
 #include <memory>
 #include <string_view>
-#include <tuple>
 
+#include "bench/machine/cpu_timer.h"
 #include "bench/micro/registration.h"
 #include "bench/micro/wave_agreement.h"
-#include "bench/throughput/cpu_timer.h"
 #include "bench/throughput/wave_capture.h"
 #include "engine/load/load.h"
 #include "scenes/scene_list.h"

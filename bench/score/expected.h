@@ -9,7 +9,6 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
 #include "bench/score/build_name.h"
 #include "bench/score/workload.h"

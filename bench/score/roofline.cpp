@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "bench/machine/cpu_timer.h"
 #include "bench/machine/machine_record.h"
 #include "bench/score/peak_loops.h"
-#include "bench/throughput/cpu_timer.h"
 #include "compiled_isas.h"
 #include "engine/plan/render_plan.h"
 #include "kernels/columns/memory_block.h"

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/enumerator_name.h"
+#include "bench/estimate_json.h"
 #include "bench/score/score.h"
 #include "engine/scene/hash_text.h"
 
@@ -9,12 +10,6 @@ namespace wavecrest {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// A figure under its name, and its interval beside it.
-void add(Json& object, const std::string& name, const Estimate& estimate) {
-  object[name] = estimate.value;
-  object[name + "_interval"] = {estimate.interval.low, estimate.interval.high};
-}
 
 // Events per item by name; null where events are not counted.
 Json eventsJson(const ScoredStage& stage, const ScoreResult& result) {
@@ -64,8 +59,8 @@ Json rowJson(const ScoreRow& row, const ScoreResult& result) {
                {"image_difference", differenceJson(row.image.difference)},
                {"score", row.score},
                {"core_score", row.coreScore}};
-  add(json, "paths_per_second", row.pathsPerSecond);
-  add(json, "paths_per_cpu_second", row.pathsPerCpuSecond);
+  addEstimate(json, "paths_per_second", row.pathsPerSecond);
+  addEstimate(json, "paths_per_cpu_second", row.pathsPerCpuSecond);
   json["processes_paths_per_second"] = row.processesPathsPerSecond;
   json["specialization"] = enumeratorName(kSpecializationNames, row.facts.specialization);
   json["accel"] = enumeratorName(kAccelNames, row.facts.accel);

@@ -2,10 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "bench/enumerator_name.h"
-#include "bench/machine/machine_record.h"
 #include "bench/score/score.h"
 #include "bench/text_lines.h"
 

@@ -2,17 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <span>
-
 #include "bench/enumerator_name.h"
 
 namespace wavecrest {
 namespace {
 
-// The score is of the study's seven methods, the first ones of kMethods, so that scores of all versions compare.
-constexpr size_t kScoredMethods = kStudyMethods;
-
-// Iterations of the size `small` by each of them: two seconds on a core of the reference machine or somewhat less,
+// Iterations of the size `small` by each method: two seconds on a core of the reference machine or somewhat less,
 // powers of two.
 struct SceneWork {
   std::string_view scene;

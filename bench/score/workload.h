@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +23,9 @@ constexpr std::array<std::string_view, 3> kScoreSizeNames{"small", "medium", "la
 
 // An entry is rendered in kScoreSlices calls of equal numbers of iterations. The image after the first is validated.
 constexpr uint64_t kScoreSlices = 8;
+
+// Scores are of the first methods of kMethods: the study's six, and bpm.
+constexpr size_t kScoredMethods = 7;
 
 struct ScoreEntry {
   std::string scene;

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "bench/throughput/cpu_timer.h"
+#include "bench/machine/cpu_timer.h"
 #include "bench/throughput/turns.h"
 #include "bench/throughput/wave_capture.h"
 #include "engine/tasks/flush_to_zero.h"

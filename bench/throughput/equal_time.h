@@ -5,7 +5,6 @@
 // error near the reference's would be overstated.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "engine/session/session.h"

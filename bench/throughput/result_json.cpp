@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/enumerator_name.h"
+#include "bench/estimate_json.h"
 #include "bench/throughput/bench_scene.h"
 #include "bench/throughput/doubts.h"
 #include "engine/scene/hash_text.h"
@@ -10,12 +11,6 @@ namespace wavecrest {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// A figure under its name, and its interval beside it.
-void add(Json& object, const std::string& name, const Estimate& estimate, double scale = 1) {
-  object[name] = scale * estimate.value;
-  object[name + "_interval"] = {scale * estimate.interval.low, scale * estimate.interval.high};
-}
 
 // All slices of one thread count, each with the number of its visit.
 Json slicesJson(const VisitSlices& visits) {
@@ -42,9 +37,9 @@ Json stateJson(const MachineState& state) {
 // lane_use is null for stages that do not work in blocks.
 Json stageJson(const StageShare& stage) {
   Json row = {{"name", stage.name}, {"items_per_path", stage.itemsPerPath}};
-  add(row, "seconds_per_item", stage.nsPerItem, 1e-9);
-  add(row, "seconds_per_path", stage.nsPerPath, 1e-9);
-  add(row, "share", stage.share);
+  addEstimate(row, "seconds_per_item", stage.nsPerItem, 1e-9);
+  addEstimate(row, "seconds_per_path", stage.nsPerPath, 1e-9);
+  addEstimate(row, "share", stage.share);
   row["lane_use"] = stage.laneUse ? Json(*stage.laneUse) : Json();
   return row;
 }
@@ -52,9 +47,9 @@ Json stageJson(const StageShare& stage) {
 // One thread count. `bench --compare` reads its slices.
 Json scalingJson(const ScalingRow& row) {
   Json json = {{"threads", row.threads}};
-  add(json, "paths_per_second", row.pathsPerSecond);
-  add(json, "speedup", row.speedup);
-  add(json, "cpu_efficiency", row.cpuEfficiency);
+  addEstimate(json, "paths_per_second", row.pathsPerSecond);
+  addEstimate(json, "speedup", row.speedup);
+  addEstimate(json, "cpu_efficiency", row.cpuEfficiency);
   json["slices"] = slicesJson(row.slices);
   return json;
 }
@@ -64,15 +59,15 @@ Json speedJson(const Speed& speed) {
   Json json = {{"isa", std::string(toString(speed.facts.isa))},
                {"specialization", enumeratorName(kSpecializationNames, speed.facts.specialization)},
                {"accel", enumeratorName(kAccelNames, speed.facts.accel)}};
-  add(json, "paths_per_second", speed.pathsPerSecond);
-  add(json, "paths_per_cpu_second", speed.pathsPerCpuSecond);
+  addEstimate(json, "paths_per_second", speed.pathsPerSecond);
+  addEstimate(json, "paths_per_cpu_second", speed.pathsPerCpuSecond);
   json["rays_per_path"] = speed.raysPerPath;
-  add(json, "rays_per_second", speed.raysPerSecond);
-  add(json, "rays_per_cpu_second", speed.raysPerCpuSecond);
+  addEstimate(json, "rays_per_second", speed.raysPerSecond);
+  addEstimate(json, "rays_per_cpu_second", speed.raysPerCpuSecond);
   json["bytes_per_path"] = speed.bytesPerPath;
   json["stages"] = Json::array();
   for (const StageShare& stage : speed.stages) json["stages"].push_back(stageJson(stage));
-  add(json, "rest_share", speed.restShare);
+  addEstimate(json, "rest_share", speed.restShare);
   json["scaling"] = Json::array();
   for (const ScalingRow& row : speed.scaling) json["scaling"].push_back(scalingJson(row));
   json["meanwhile"] = stateJson(speed.machine);
@@ -96,7 +91,7 @@ Json policiesJson(const PolicyTable& table) {
     Json json = {{"precision", enumeratorName(kPrecisionNames, row.precision)},
                  {"isa", std::string(toString(row.isa))},
                  {"specialization", enumeratorName(kSpecializationNames, row.specialization)}};
-    add(json, "paths_per_cpu_second", row.pathsPerCpuSecond);
+    addEstimate(json, "paths_per_cpu_second", row.pathsPerCpuSecond);
     json["mean_difference"] = row.meanDifference;
     json["pixel_difference"] = row.pixelDifference;
     json["bytes_per_path"] = row.bytesPerPath;

@@ -50,8 +50,7 @@ void addSpeed(Text& text, const Speed& speed, uint32_t threads) {
   addStages(text, speed);
   line(text, "\n  {:<12} {:>16} {:>15} {:>18}", "threads", "M paths/s", "speedup", "CPU efficiency");
   for (const ScalingRow& row : speed.scaling) {
-    line(text, "  {:<12} {:>16} {:>15} {:>18}", row.threads, rate(row.pathsPerSecond),
-         fmt::format("{:.2f} +-{:.2f}", row.speedup.value, row.speedup.interval.halfWidth()),
+    line(text, "  {:<12} {:>16} {:>15} {:>18}", row.threads, rate(row.pathsPerSecond), times(row.speedup),
          percent(row.cpuEfficiency));
   }
 }

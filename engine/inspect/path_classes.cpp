@@ -100,9 +100,14 @@ std::vector<PathClass> findClasses(const SceneLinks& links) {
 
 // ---- which method makes which ---------------------------------------------------------------------------------------
 
+// From these figures on a strategy is efficient. The study turned from pt to bpt where lamps filled 0.06 sr of what a
+// typical vertex sees, so its references are reproduced with 0.1.
+constexpr double kLightSolidAngle = 0.1;  // sr: s = 0 behind a diffuse event
+constexpr double kCameraCoverage = 0.01;  // share of light vertices that the lens sees: t = 1
+constexpr double kLightCoverage = 0.1;    // share of camera vertices that see a light: s = 1 on indirect light
+
 struct Judge {
   const SceneLinks& links;
-  const EfficiencyLimits& limits;
 
   // The best that any of the method's strategies makes of the class.
   Verdict verdict(const PathStrategies& method, const PathBits& path) const {
@@ -117,18 +122,18 @@ struct Judge {
     offer(method.emission && inView && !path.deltaLight && !(mergingAlone && path.hasD), emissionIsEfficient(path));
     // Next event estimation is efficient for direct light. For indirect light enough camera vertices have to see a
     // light.
-    offer(method.nextEvent && inView && path.firstD, !path.hasDD || links.lightCoverage >= limits.lightCoverage);
+    offer(method.nextEvent && inView && path.firstD, !path.hasDD || links.lightCoverage >= kLightCoverage);
     // Connections are inefficient where all pairs of D are glossy.
     offer(method.connect && path.hasDD, !links.onlyGlossyPairs);
     // A glossy surface in view makes t = 1 inefficient, and merging if it is at the first vertex alone.
-    offer(method.camera && path.lastD, links.cameraCoverage >= limits.cameraCoverage && !links.eyeSeesGlossy);
+    offer(method.camera && path.lastD, links.cameraCoverage >= kCameraCoverage && !links.eyeSeesGlossy);
     offer(method.merge && path.hasD, !(method.mergeAtFirstVertex && path.lastD && links.eyeSeesGlossy));
     return best;
   }
 
   // A light behind delta lobes alone is met for certain; behind a diffuse event, by chance.
   bool emissionIsEfficient(const PathBits& path) const {
-    return !path.hasD || links.lightSolidAngle >= limits.lightSolidAngle;
+    return !path.hasD || links.lightSolidAngle >= kLightSolidAngle;
   }
 };
 
@@ -167,41 +172,32 @@ std::string impossibleFor(const PathClassTable& table, Method method) {
 // METHODS 8.3, which is the study's rule, with one line more: light tracing where it makes every class well and path
 // tracing does not, because no connection is then worth its price.
 ReferenceChoice chooseReference(const PathClassTable& table) {
-  // Whether the table has a method.
-  const auto offers = [&](Method method) {
-    return std::find(table.methods.begin(), table.methods.end(), method) != table.methods.end();
-  };
-  const auto count = [&](Method method) { return countFor(table, method); };
   // An unbiased method: pt, then lt, then bpt, then pt although it is inefficient.
-  if (offers(Method::pt)) {
-    const Count pt = count(Method::pt);
-    if (pt.impossible + pt.inefficient == 0) return {Method::pt, false, "path tracing samples every class of paths"};
-    if (offers(Method::lt) && pt.impossible != 0) {
-      const Count lt = count(Method::lt);
-      if (lt.impossible + lt.inefficient == 0) {
-        return {Method::lt, false,
-                "path tracing cannot make " + pt.names + "; light tracing samples every class without connections"};
-      }
+  const Count pt = countFor(table, Method::pt);
+  if (pt.impossible + pt.inefficient == 0) return {Method::pt, false, "path tracing samples every class of paths"};
+  if (pt.impossible != 0) {
+    const Count lt = countFor(table, Method::lt);
+    if (lt.impossible + lt.inefficient == 0) {
+      return {Method::lt, false,
+              "path tracing cannot make " + pt.names + "; light tracing samples every class without connections"};
     }
-    if (offers(Method::bpt)) {
-      const Count bpt = count(Method::bpt);
-      if (bpt.impossible == 0 && (pt.impossible != 0 || bpt.inefficient < pt.inefficient)) {
-        return {Method::bpt, false,
-                "path tracing " + std::string(pt.impossible != 0 ? "cannot make " : "is inefficient for ") + pt.names +
-                    "; bidirectional path tracing is unbiased and samples " +
-                    (bpt.inefficient == 0 ? "every class" : "all classes, few of them inefficiently")};
-      }
-    }
-    if (pt.impossible == 0) {
-      return {Method::pt, false, "path tracing makes every class of paths, " + pt.names + " inefficiently"};
-    }
+  }
+  const Count bpt = countFor(table, Method::bpt);
+  if (bpt.impossible == 0 && (pt.impossible != 0 || bpt.inefficient < pt.inefficient)) {
+    return {Method::bpt, false,
+            "path tracing " + std::string(pt.impossible != 0 ? "cannot make " : "is inefficient for ") + pt.names +
+                "; bidirectional path tracing is unbiased and samples " +
+                (bpt.inefficient == 0 ? "every class" : "all classes, few of them inefficiently")};
+  }
+  if (pt.impossible == 0) {
+    return {Method::pt, false, "path tracing makes every class of paths, " + pt.names + " inefficiently"};
   }
   // Merging, which is biased.
   for (const Method method : {Method::vcm, Method::ppm}) {
-    if (!offers(method) || count(method).impossible != 0) continue;
-    const std::string lacking = offers(Method::bpt) ? " (bpt lacks " + impossibleFor(table, Method::bpt) + ")" : "";
+    if (countFor(table, method).impossible != 0) continue;
     return {method, true,
-            "no unbiased method makes every class" + lacking + "; a tiny radius keeps the bias of merging small"};
+            "no unbiased method makes every class (bpt lacks " + impossibleFor(table, Method::bpt) +
+                "); a tiny radius keeps the bias of merging small"};
   }
   throw std::invalid_argument("chooseReference: none of the methods makes every class");
 }
@@ -209,19 +205,15 @@ ReferenceChoice chooseReference(const PathClassTable& table) {
 }  // namespace
 
 Verdict PathClassTable::verdict(const PathClass& pathClass, Method method) const {
-  const auto found = std::find(methods.begin(), methods.end(), method);
-  if (found == methods.end()) throw std::invalid_argument("PathClassTable: a method that was not asked for");
-  return pathClass.verdicts[static_cast<size_t>(found - methods.begin())];
+  return pathClass.verdicts[static_cast<size_t>(method)];
 }
 
-PathClassTable classifyPaths(const SceneLinks& links, std::span<const MethodEntry> methods,
-                             const EfficiencyLimits& limits) {
+PathClassTable classifyPaths(const SceneLinks& links) {
   PathClassTable table;
-  const Judge judge{links, limits};
-  for (const MethodEntry& entry : methods) table.methods.push_back(entry.method);
+  const Judge judge{links};
   table.classes = findClasses(links);
   for (PathClass& pathClass : table.classes) {
-    for (const MethodEntry& entry : methods) {
+    for (const MethodEntry& entry : kMethods) {
       pathClass.verdicts.push_back(judge.verdict(strategiesOf(entry.method), pathClass.bits));
     }
   }

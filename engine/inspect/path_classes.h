@@ -7,7 +7,6 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,7 +33,7 @@ struct PathClass {
   std::string signature;    // "A S+ D E": A extended light, P delta light, S+ one or more; D D stands for two or more
   std::string description;  // in words
   PathBits bits;
-  std::vector<Verdict> verdicts;  // one per method, in the order asked for
+  std::vector<Verdict> verdicts;  // in the order of kMethods
 };
 
 struct ReferenceChoice {
@@ -44,25 +43,15 @@ struct ReferenceChoice {
 };
 
 struct PathClassTable {
-  std::vector<Method> methods;
   std::vector<PathClass> classes;
   ReferenceChoice reference;
 
-  // Verdict of one of the methods on a class.
+  // Verdict of a method on a class.
   Verdict verdict(const PathClass& pathClass, Method method) const;
 };
 
-// From these figures on a strategy is efficient. The study turned from pt to bpt where lamps filled 0.06 sr of what a
-// typical vertex sees, so its references are reproduced with 0.1.
-struct EfficiencyLimits {
-  double lightSolidAngle = 0.1;  // sr: s = 0 behind a diffuse event
-  double cameraCoverage = 0.01;  // share of light vertices that the lens sees: t = 1
-  double lightCoverage = 0.1;    // share of camera vertices that see a light: s = 1 on indirect light
-};
-
-// The table of a scene with these links, for some methods.
-PathClassTable classifyPaths(const SceneLinks& links, std::span<const MethodEntry> methods = kMethods,
-                             const EfficiencyLimits& limits = {});
+// The table of a scene with these links.
+PathClassTable classifyPaths(const SceneLinks& links);
 
 // The table of a scene. Throws std::runtime_error where the scene cannot be rendered.
 PathClassTable classifyPaths(const Scene& scene);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <span>
 #include <vector>
 
 #include "engine/plan/render_plan.h"

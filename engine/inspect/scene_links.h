@@ -6,7 +6,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 
 #include "engine/scene/scene.h"
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -59,15 +58,6 @@ static_assert([] {
   return true;
 }());
 
-// The study compares the first so many.
-constexpr size_t kStudyMethods = 7;
-
-constexpr std::optional<Method> parseMethod(std::string_view word) {
-  for (const MethodEntry& entry : kMethods) {
-    if (entry.name == word) return entry.method;
-  }
-  return std::nullopt;
-}
 constexpr const MethodEntry& entryOf(Method method) { return kMethods[static_cast<size_t>(method)]; }
 constexpr std::string_view toString(Method method) { return entryOf(method).name; }
 

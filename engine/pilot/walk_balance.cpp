@@ -1,7 +1,6 @@
 #include "engine/pilot/walk_balance.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>

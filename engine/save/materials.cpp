@@ -8,11 +8,6 @@ namespace {
 
 constexpr Rgb kWhite{1, 1, 1};
 
-// A factor that is 1 unless a file says otherwise.
-void addFactor(const SaveContext& context, pugi::xml_node node, const char* name, const TexturedRgb& value) {
-  if (value.texture != kNone || value.value != kWhite) addTexturedRgb(context, node, name, value);
-}
-
 // Whether a constant is outside of [0, 1]. A file can give it only as a `rawconstant` texture, whose range is not
 // checked.
 bool isRaw(const TexturedRgb& value) {
@@ -107,8 +102,7 @@ class BsdfWriter {
   }
   // A factor that is 1 unless a file says otherwise, in [0, 1] or not.
   void factor(const char* name, const TexturedRgb& value) {
-    if (isRaw(value)) return reflectance(name, value);
-    addFactor(context_, node_, name, value);
+    if (value.texture != kNone || value.value != kWhite) reflectance(name, value);
   }
   void indices(double interior, double exterior) {
     addFloat(node_, "int_ior", interior);

@@ -8,7 +8,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "engine/scene/scene.h"

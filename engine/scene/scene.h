@@ -136,6 +136,8 @@ struct Material {
   uint32_t normalTexture = kNone;  // `normalmap`
   NormalMapping normalMapping;     // of either
   SourceLocation source;
+
+  bool hasMap() const { return bumpTexture != kNone || normalTexture != kNone; }
 };
 
 // ---- shapes ---------------------------------------------------------------------------------------------------------

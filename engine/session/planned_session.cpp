@@ -4,7 +4,6 @@
 
 #include "engine/pilot/finished_plan.h"
 #include "engine/plan/memory_plan.h"
-#include "engine/tasks/for_each.h"
 
 namespace wavecrest {
 

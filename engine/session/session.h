@@ -1,10 +1,9 @@
 // A session: one render of one scene by one method, its clock and its film.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -81,6 +80,12 @@ struct RenderStatistics {
   // The method whose page is executed, where `asked` is that of the settings.
   Method renderedBy(Method asked) const { return choice ? choice->method : asked; }
 };
+
+// The smaller of two limits. An empty value is no limit.
+template <class T>
+std::optional<T> earlier(std::optional<T> a, std::optional<T> b) {
+  return a && b ? std::min(*a, *b) : a ? a : b;
+}
 
 class Session {
  public:

@@ -15,12 +15,6 @@ constexpr double kSnapshotsPerDecade = 6;
 
 double logarithmicTime(unsigned number) { return kFirstLogSnapshot * std::pow(10.0, number / kSnapshotsPerDecade); }
 
-// Whichever comes first.
-template <class T>
-std::optional<T> earlier(std::optional<T> a, std::optional<T> b) {
-  return a && b ? std::min(*a, *b) : a ? a : b;
-}
-
 }  // namespace
 
 SnapshotSchedule SnapshotSchedule::every(double seconds) { return SnapshotSchedule(Kind::regular, seconds); }

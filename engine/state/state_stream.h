@@ -97,4 +97,15 @@ class StateReader {
   std::span<const unsigned char> left_;
 };
 
+// What save(StateWriter&) writes, behind `head` bytes of 0. about: how many bytes there will be.
+template <class Save>
+std::vector<unsigned char> savedBytes(const Save& save, size_t head = 0, size_t about = 0) {
+  std::vector<unsigned char> bytes(head);
+  bytes.reserve(head + about);
+  StateWriter out([&](std::span<const unsigned char> block) { bytes.insert(bytes.end(), block.begin(), block.end()); });
+  save(out);
+  out.flush();
+  return bytes;
+}
+
 }  // namespace wavecrest

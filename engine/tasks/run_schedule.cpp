@@ -5,7 +5,6 @@
 #include <atomic>
 #include <deque>
 #include <exception>
-#include <utility>
 
 #include "engine/tasks/task_order.h"
 #include "engine/tasks/task_recorder.h"

@@ -1,6 +1,5 @@
 #include "engine/tasks/task_recorder.h"
 
-#include <algorithm>
 #include <numeric>
 #include <utility>
 

@@ -15,16 +15,9 @@ WAVECREST_INLINE Vec3<typename P::Real> conductorReflectance(const BsdfInput<P, 
          fresnelConductor<P>(cosine, to<Real>(input.at(input.materials->eta)), to<Real>(input.at(input.materials->k)));
 }
 
-struct ConductorBsdf {
+struct ConductorBsdf : DeltaLobes {
   static constexpr BsdfKind kKind = BsdfKind::conductor;
   static constexpr uint32_t kFeature = kSpecularBsdfs;
-  static constexpr bool kHasDelta = true;
-
-  template <class P, bool kTextured>
-  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>&, Vec3<typename P::Real>,
-                                                           Vec3<typename P::Real>) {
-    return zeroBsdfValue<typename P::Real>();
-  }
 
   template <class P, bool kTextured>
   static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P, kTextured>& input,

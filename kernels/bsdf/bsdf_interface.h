@@ -127,6 +127,17 @@ WAVECREST_INLINE BsdfValue<Real> zeroBsdfValue() {
   return {{zero, zero, zero}, zero, zero};
 }
 
+// What kinds with nothing but delta lobes derive from.
+struct DeltaLobes {
+  static constexpr bool kHasDelta = true;
+
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>&, Vec3<typename P::Real>,
+                                                           Vec3<typename P::Real>) {
+    return zeroBsdfValue<typename P::Real>();
+  }
+};
+
 // Change of radiance across a refracting boundary, in the direction of a camera walk; a light walk carries power, which
 // does not change (Veach 1997, 5.2).
 template <class P, bool kTextured>

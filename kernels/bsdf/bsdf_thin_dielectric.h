@@ -9,16 +9,9 @@
 
 WAVECREST_SIMD_BEGIN
 
-struct ThinDielectricBsdf {
+struct ThinDielectricBsdf : DeltaLobes {
   static constexpr BsdfKind kKind = BsdfKind::thinDielectric;
   static constexpr uint32_t kFeature = kLayeredBsdfs;
-  static constexpr bool kHasDelta = true;
-
-  template <class P, bool kTextured>
-  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>&, Vec3<typename P::Real>,
-                                                           Vec3<typename P::Real>) {
-    return zeroBsdfValue<typename P::Real>();
-  }
 
   template <class P, bool kTextured>
   static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P, kTextured>& input,

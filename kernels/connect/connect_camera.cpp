@@ -71,16 +71,12 @@ WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& cont
 
     const Vec3<Real> origin = offsetOrigin(shading.position, shading.normal, shading.offset, view.direction);
     const UInt pixel = toUInt(to<Float>(y)) * UInt(film.width) + toUInt(to<Float>(x));
-    appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);
-    appendVec3(to<Float>(view.end - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
-    appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
+    UInt target = pixel;
     if (context.contributesToLanes()) {
-      const UInt lane = select(lit, load(paths.lane, i), UInt(0u));
-      storeWhere(pixel, lit, context.lanes.pixel, lane);
-      append(lane, lit, shadow.target, out);
-    } else {
-      append(pixel, lit, shadow.target, out);
+      target = select(lit, load(paths.lane, i), UInt(0u));
+      storeWhere(pixel, lit, context.lanes.pixel, target);
     }
+    appendShadowRays(shadow, lit, origin, view.end, contribution, target, out);
     if (scene.passages != nullptr) append(wLight, lit, shadow.others, out);
     out += countTrue(lit);
   }

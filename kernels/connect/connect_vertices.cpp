@@ -165,10 +165,7 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
   if (none(lit)) return out;
   const Vec3<Real> origin = offsetOrigin(z.position, z.normal, z.offset, towards);
   const Vec3<Real> end = offsetOrigin(y.position, y.normal, y.offset, -towards);
-  appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);
-  appendVec3(to<Float>(end - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
-  appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
-  append(load(lanes), lit, shadow.target, out);
+  appendShadowRays(shadow, lit, origin, end, contribution, load(lanes), out);
   if (scene.passages != nullptr) append(wLight + wCamera, lit, shadow.others, out);
   return out + countTrue(lit);
 }

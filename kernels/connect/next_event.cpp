@@ -56,10 +56,7 @@ WAVECREST_NOINLINE size_t sampleLights(const StageContext<typename P::Storage>& 
     const Mask lit = active & sample.valid & (maxComponent(contribution) > Real(0));
     if (none(lit)) continue;
     const Vec3<Real> origin = offsetOrigin(shading.position, shading.normal, shading.offset, sample.direction);
-    appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);
-    appendVec3(to<Float>(sample.end - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
-    appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
-    append(lane, lit, shadow.target, out);
+    appendShadowRays(shadow, lit, origin, sample.end, contribution, lane, out);
     if (scene.passages != nullptr) append(other, lit, shadow.others, out);
     out += countTrue(lit);
   }

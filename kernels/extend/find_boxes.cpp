@@ -1,6 +1,5 @@
 #include "kernels/extend/find_boxes.h"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 

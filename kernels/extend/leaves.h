@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "kernels/columns/memory_block.h"
 #include "kernels/extend/corner_weld.h"

@@ -1,7 +1,6 @@
 #include "kernels/extend/small_scene.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "kernels/extend/find_boxes.h"
 #include "kernels/extend/find_solids.h"

@@ -17,11 +17,6 @@ struct GuidedSample {
   Real slope, measure;
 };
 
-template <class Real>
-WAVECREST_INLINE Real luminanceOf(Vec3<Real> rgb) {
-  return mulAdd(Real(0.2126f), rgb.x, mulAdd(Real(0.7152f), rgb.y, Real(0.0722f) * rgb.z));
-}
-
 // eta_wi / eta_wo of directions that the guide chose through a rough boundary: roulette alone asks for it. 1 in blends,
 // whose parts may have different ones.
 template <class P, uint32_t kBsdfs>

@@ -41,13 +41,6 @@ std::vector<Isa> findAvailable() {
 
 std::string_view toString(Isa isa) { return kNames[static_cast<size_t>(isa)]; }
 
-std::optional<Isa> parseIsa(std::string_view word) {
-  for (const Isa isa : kAllIsas) {
-    if (toString(isa) == word) return isa;
-  }
-  return std::nullopt;
-}
-
 const std::vector<Isa>& availableIsas() {
   static const std::vector<Isa> available = findAvailable();
   return available;

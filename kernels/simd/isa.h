@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -15,9 +14,6 @@ constexpr std::array<Isa, 4> kAllIsas{Isa::scalar, Isa::sse4, Isa::avx2, Isa::av
 
 // "scalar", "sse4", "avx2" or "avx512": the spelling of --isa.
 std::string_view toString(Isa isa);
-
-// The inverse of toString; nothing for any other word.
-std::optional<Isa> parseIsa(std::string_view word);
 
 // The instruction sets that are both compiled into this binary and supported by this CPU and operating system, worst
 // first. Throws std::runtime_error where there is none: a build for few instruction sets on another machine.

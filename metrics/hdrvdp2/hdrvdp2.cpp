@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <mutex>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 

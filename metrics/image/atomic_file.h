@@ -2,7 +2,6 @@
 // crash.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>

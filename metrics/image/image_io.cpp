@@ -30,17 +30,6 @@ constexpr std::array kFormats{
     Format{".png", codecs::decodePng},
 };
 
-// The extension in lower case with its dot, or nothing.
-std::string extensionOf(const std::string& path) {
-  const size_t dot = path.find_last_of("./");
-  // A dot before the last slash belongs to a folder.
-  if (dot == std::string::npos || path[dot] == '/') return {};
-  std::string extension = path.substr(dot);
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 [[noreturn]] void failFormat(const std::string& path, std::string_view extension, const std::string& expected) {
   const std::string wrong =
       extension.empty() ? "has no file extension" : "unknown image format '" + std::string(extension) + "'";
@@ -109,6 +98,16 @@ const Writer& writerOf(const std::string& path) {
 }
 
 }  // namespace
+
+std::string extensionOf(const std::string& path) {
+  const size_t dot = path.find_last_of("./");
+  // A dot before the last slash belongs to a folder.
+  if (dot == std::string::npos || path[dot] == '/') return {};
+  std::string extension = path.substr(dot);
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
 
 void checkDecodedSize(const std::string& path, uint64_t width, uint64_t height, uint64_t fileBytes) {
   const uint64_t bytes = 3 * sizeof(float) * width * height, limit = imageLimit();

@@ -25,6 +25,9 @@ using Metadata = std::map<std::string, std::string>;
 constexpr const char* kImageLimitVariable = "WAVECREST_MAX_IMAGE";
 constexpr uint64_t kImageLimit = uint64_t{2} << 30, kPlainRatio = 16;
 
+// What formats go by: the extension of a file's name in lower case with its dot, or nothing.
+std::string extensionOf(const std::string& path);
+
 // Refuses an image of three channels that is larger than this. Throws ImageError, also where the variable is no size.
 void checkDecodedSize(const std::string& path, uint64_t width, uint64_t height, uint64_t fileBytes);
 
@@ -64,6 +67,10 @@ Image readExrLayer(const std::string& path, const std::string& layer);
 
 // Little-endian floats as they are.
 void writePfm(const std::string& path, const Image& image);
+
+// A PNG file of 8-bit sRGB in memory, from rows of RGB, top row first; path serves error messages only. Throws
+// ImageError.
+std::vector<unsigned char> encodePng(const std::string& path, uint32_t width, uint32_t height, const uint8_t* rgb);
 
 // 8-bit sRGB. The second form clamps, applies the sRGB curve and rounds.
 void writePng(const std::string& path, const Image8& image);

@@ -4,6 +4,7 @@
 
 #include <csetjmp>
 #include <cstring>
+#include <utility>
 
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/codecs.h"
@@ -151,12 +152,16 @@ ImageFile decodePng(const std::string& path, Bytes bytes) {
 
 }  // namespace codecs
 
-void writePng(const std::string& path, const Image8& image) {
+std::vector<unsigned char> encodePng(const std::string& path, uint32_t width, uint32_t height, const uint8_t* rgb) {
   PngWriter writer;
   if (!writer.info) throw ImageError(path, "libpng cannot be started", "expected enough memory");
-  if (!writeRows(writer, image.width, image.height, image.pixels.data()))
+  if (!writeRows(writer, width, height, rgb))
     throw ImageError(path, std::string("PNG error: ") + writer.message, "expected a writable image");
-  writeFileAtomically(path, writer.bytes);
+  return std::move(writer.bytes);
+}
+
+void writePng(const std::string& path, const Image8& image) {
+  writeFileAtomically(path, encodePng(path, image.width, image.height, image.pixels.data()));
 }
 
 }  // namespace wavecrest

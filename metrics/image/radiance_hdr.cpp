@@ -4,9 +4,7 @@
 // Only the usual orientation -Y H +X W is accepted, and only RGBE pixels, not XYZE.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 
 #include "metrics/image/codecs.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <new>
 
@@ -57,6 +56,5 @@ class BasicPlane {
 };
 
 using Plane = BasicPlane<float>;
-using DoublePlane = BasicPlane<double>;
 
 }  // namespace wavecrest

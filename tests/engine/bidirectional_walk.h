@@ -9,7 +9,6 @@
 #include <memory>
 #include <numbers>
 #include <stdexcept>
-#include <vector>
 
 #include "engine/plan/render_plan.h"
 #include "engine/tasks/for_each.h"

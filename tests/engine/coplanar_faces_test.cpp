@@ -11,7 +11,6 @@
 
 #include "engine/compile/compiled_scene.h"
 #include "engine/scene/vector_math.h"
-#include "scenes/scene_list.h"
 #include "tests/engine/test_scenes.h"
 
 namespace wavecrest {

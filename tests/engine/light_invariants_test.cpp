@@ -5,7 +5,6 @@
 #include <bit>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include "tests/engine/bidirectional_walk.h"
 #include "tests/engine/light_scenes.h"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <tuple>
 #include <vector>
 
 #include "engine/pilot/finished_plan.h"

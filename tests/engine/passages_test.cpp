@@ -7,7 +7,6 @@
 
 #include <numbers>
 #include <string>
-#include <vector>
 
 #include "engine/plan/render_plan.h"
 #include "engine/scene/scene_error.h"

@@ -77,9 +77,9 @@ std::string methodsWith(const PathClassTable& table, const std::string& signatur
   const PathClass* const pathClass = find(table, signature);
   if (pathClass == nullptr) return "no such class";
   std::string names;
-  for (const Method method : table.methods) {
-    if (table.verdict(*pathClass, method) == verdict) {
-      names += (names.empty() ? "" : " ") + std::string(toString(method));
+  for (const MethodEntry& entry : kMethods) {
+    if (table.verdict(*pathClass, entry.method) == verdict) {
+      names += (names.empty() ? "" : " ") + std::string(entry.name);
     }
   }
   return names;

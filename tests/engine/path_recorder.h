@@ -4,11 +4,8 @@
 // that walked it; edges of connections run between the vertices themselves.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <optional>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "tests/engine/bidirectional_walk.h"

@@ -10,11 +10,7 @@ namespace wavecrest {
 // Of a session, a film, or whatever saves itself.
 template <class Saved>
 std::vector<unsigned char> savedState(const Saved& saved) {
-  std::vector<unsigned char> bytes;
-  StateWriter out([&](std::span<const unsigned char> block) { bytes.insert(bytes.end(), block.begin(), block.end()); });
-  saved.save(out);
-  out.flush();
-  return bytes;
+  return savedBytes([&](StateWriter& out) { saved.save(out); });
 }
 
 template <class Restored>

@@ -8,7 +8,6 @@
 #include "metrics/hdrvdp2/hdrvdp2.h"
 #include "metrics/hdrvdp2/model.h"
 #include "metrics/hdrvdp2/resize.h"
-#include "metrics/kernels/metric_kernels.h"
 #include "tests/metrics/golden.h"
 #include "tests/metrics/golden_json.h"
 

@@ -44,6 +44,12 @@ Image testImage(uint32_t channels = 3) {
   return image;
 }
 
+TEST(Extension, isInLowerCaseAndOfTheFileAlone) {
+  EXPECT_EQ(extensionOf("a/b.PnG"), ".png");
+  EXPECT_EQ(extensionOf(".png"), ".png");
+  EXPECT_EQ(extensionOf("a.exr/b"), "");
+}
+
 TEST_F(ImageFiles, ExrKeepsEveryBitAndTheMetadata) {
   const Image image = testImage();
   writeExr(path("a.exr"), image, {{"scene", "cornell"}, {"method", "vcm"}});

@@ -8,6 +8,7 @@
 #include <functional>
 #include <random>
 
+#include "engine/pilot/finished_plan.h"
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image.h"
 #include "tests/engine/render_statistics.h"
@@ -80,6 +81,31 @@ TEST_F(CheckpointTest, aRenderGoesOnFromItsFile) {
     session->renderUntil(5, std::nullopt);
     EXPECT_EQ(session->film().resolve(), render(scene_, settings, 5)) << entry.name;
   }
+}
+
+// On one thread a budget has room for more light paths than on two, which make another image.
+TEST_F(CheckpointTest, aRenderWithABudgetGoesOnWithItsLightPaths) {
+  const Scene scene = sceneFile("cornell-diffuse", 40, 30);
+  RenderSettings settings = settingsOf(Method::vcm);
+  settings.threads = 2;
+  const MemoryUse whole = planMemory(scene, settings).use;
+  settings.memoryBytes = whole.total() - (whole.lightVertices + whole.photonMap) / 2;
+  const auto broken = Session::create(scene, settings);
+  broken->renderUntil(2, std::nullopt);
+  const std::string file = folder_.path("file");
+  writeCheckpoint(file, scene, settings, *broken, {{"mine", 7}});
+
+  const Checkpoint checkpoint(file);
+  RenderSettings other = settings;
+  other.threads = 1;
+  checkpoint.cutAlike(other);
+  RenderSettings unbound = other;
+  unbound.mostLightPaths.reset();
+  EXPECT_GT(planMemory(scene, unbound).lightPaths, broken->memoryPlan().lightPaths);
+  const auto session = Session::create(scene, other);
+  checkpoint.restore(scene, other, *session);
+  session->renderUntil(5, std::nullopt);
+  EXPECT_EQ(session->film().resolve(), render(scene, settings, 5));
 }
 
 TEST_F(CheckpointTest, theFirstSettingThatDiffersIsNamed) {

@@ -8,7 +8,7 @@
 #include <array>
 #include <vector>
 
-#include "bench/throughput/cpu_timer.h"
+#include "bench/machine/cpu_timer.h"
 
 namespace wavecrest {
 namespace {

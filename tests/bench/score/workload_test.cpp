@@ -65,10 +65,10 @@ TEST(Workload, processesRenderWithTheSettingsOfThreads) {
   EXPECT_EQ(options(Method::vcm), all + "--roulette throughput --radius 0.001 --merge-vertices all ");
 }
 
-TEST(Workload, hasEveryMethodOfTheStudyOnEveryScene) {
-  EXPECT_EQ(workloadOf(ScoreSize::small).size(), 4 * kStudyMethods);
+TEST(Workload, hasEveryScoredMethodOnEveryScene) {
+  EXPECT_EQ(workloadOf(ScoreSize::small).size(), 4 * kScoredMethods);
   for (const ScoreSize size : {ScoreSize::medium, ScoreSize::large}) {
-    EXPECT_EQ(workloadOf(size).size(), 9 * kStudyMethods);
+    EXPECT_EQ(workloadOf(size).size(), 9 * kScoredMethods);
   }
 }
 

@@ -1,0 +1,121 @@
+#include "bench/claims/loss_comparisons.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "bench/claims/claim_needs.h"
+
+namespace wavecrest {
+namespace {
+
+using V = ClaimVerdict;
+
+constexpr double kNearFloor = 2;  // times the loss that the reference's noise alone gives
+
+}  // namespace
+
+// Whether a mean loss is mostly the noise of the reference.
+bool LossComparisons::nearFloor(const std::string& metric, std::span<const double> logLosses) const {
+  const std::optional<double> floor = scene_.floorLoss(metric);
+  return floor && meanOfLog(logLosses) <= kNearFloor * *floor;
+}
+
+Comparison LossComparisons::largerLoss(const std::string& metric, const std::string& a, const std::string& b,
+                                       double factor) const {
+  const std::vector<double> lossesA = scene_.logLosses(a, metric), lossesB = scene_.logLosses(b, metric);
+  if (lossesA.empty() || lossesB.empty()) return {V::notJudged, 0, nameOf(metric) + " was not measured"};
+  std::string text =
+      fmt::format("{} {} {:.3g}, {} {:.3g}", nameOf(metric), scene_.rowOf(a), meanBand(scene_.scores(a, metric)).mean,
+                  scene_.rowOf(b), meanBand(scene_.scores(b, metric)).mean);
+  if (factor != 1)
+    text += fmt::format(", losses {:.2g} : 1, limit {:g}", meanOfLog(lossesA) / meanOfLog(lossesB), factor);
+  Comparison result = above(scene_.lossDifference(metric, a, b), std::log(factor), text);
+  // Where even the larger one is mostly noise of the reference, the true losses may differ by any factor.
+  if (result.verdict != V::holds && nearFloor(metric, lossesA) && nearFloor(metric, lossesB)) {
+    result.verdict = V::notJudged;
+    result.text +=
+        fmt::format("; the reference's noise alone gives {:.3g}", scoreOfLoss(metric, *scene_.floorLoss(metric)));
+  }
+  return result;
+}
+
+Comparison LossComparisons::smallerLoss(const std::string& metric, const std::string& a, const std::string& b) const {
+  return withTime(largerLoss(metric, b, a, 1), metric, a, b, 1);
+}
+
+Comparison LossComparisons::notLarger(const std::string& metric, const std::string& a, const std::string& b,
+                                      double factor) const {
+  return withTime(negated(largerLoss(metric, a, b, factor)), metric, a, b, factor);
+}
+
+Comparison LossComparisons::faster(const std::string& metric, const std::string& a, const std::string& b) const {
+  const std::vector<double> lossesA = scene_.logLosses(a, metric), lossesB = scene_.logLosses(b, metric);
+  if (lossesA.empty() || lossesB.empty()) return {V::notJudged, 0, nameOf(metric) + " was not measured"};
+  // The larger final loss is the best one that both reach.
+  const double loss = std::max(meanOfLog(lossesA), meanOfLog(lossesB));
+  const std::vector<double> timesA = scene_.logTimes(a, metric, loss), timesB = scene_.logTimes(b, metric, loss);
+  // A logarithm of time varies by that of a loss over the slope of the curve.
+  Band band = differenceBand(timesB, timesA);
+  if (timesA.size() == 1 || timesB.size() == 1) {
+    const double flattest = std::min(steepness(a, metric, meanOfLog(timesA)), steepness(b, metric, meanOfLog(timesB)));
+    band.halfWidth = scene_.lossDifference(metric, a, b).halfWidth / flattest;
+  }
+  Comparison result =
+      above(band, 0,
+            fmt::format("to {} {:.3g} {} takes {:.3g} s, {} {:.3g} s", nameOf(metric), scoreOfLoss(metric, loss),
+                        scene_.rowOf(a), meanOfLog(timesA), scene_.rowOf(b), meanOfLog(timesB)));
+  if (result.margin == 0) result.verdict = V::undecided;  // both have it at their first snapshots
+  if (result.verdict != V::holds && nearFloor(metric, lossesA) && nearFloor(metric, lossesB)) {
+    result.verdict = V::notJudged;
+    result.text += "; that is the reference's own noise";
+  }
+  return withTime(std::move(result), metric, a, b, 1);
+}
+
+// How steeply a loss falls about a time: minus d log(loss) / d log(time), at least 0.
+double LossComparisons::steepness(const std::string& method, const std::string& metric, double seconds) const {
+  const std::vector<double> slopes = scene_.lossSlopes(method, metric, seconds);
+  return slopes.empty() ? 0 : std::max(0.0, -meanBand(slopes).mean);
+}
+
+// A comparison of `a` and `b` that fails because the loss of `a` is not within the factor of that of `b`. Where it
+// falls faster, so that at these rates it would be within the time that the study had, time is what it lacks. Near
+// the reference's noise every curve is flat, so `b` has to be above it.
+Comparison LossComparisons::withTime(Comparison comparison, const std::string& metric, const std::string& a,
+                                     const std::string& b, double factor) const {
+  if (comparison.verdict != V::fails || nearFloor(metric, scene_.logLosses(b, metric))) return comparison;
+  const std::optional<double> shareA = studyPathShare(scene_, a), shareB = studyPathShare(scene_, b);
+  const double end = scene_.endSeconds(a);
+  const double closing = steepness(a, metric, end) - steepness(b, metric, end);
+  const double behind = meanOfLog(scene_.logLosses(a, metric)) / meanOfLog(scene_.logLosses(b, metric)) / factor;
+  if (!shareA || !shareB || !(closing > 0) || !(behind > 1)) return comparison;
+  const double times = std::pow(behind, 1 / closing);  // as long as the runs
+  if (!(times * std::min(*shareA, *shareB) <= 1)) return comparison;
+  comparison.verdict = V::notReached;
+  comparison.text +=
+      fmt::format("; at these rates {} after {:g} s", factor == 1 ? "level" : "within it", roundedTime(times * end));
+  return comparison;
+}
+
+Comparison LossComparisons::worseHere(const std::string& metric, const std::string& a, const std::string& b,
+                                      const std::string& control, double factor) const {
+  const SceneLosses other = scene_.other(control);
+  // The logarithm of the ratio of losses in a scene.
+  const auto behind = [&](const SceneLosses& scene) -> std::optional<Band> {
+    if (scene.logLosses(a, metric).empty() || scene.logLosses(b, metric).empty()) return std::nullopt;
+    return scene.lossDifference(metric, a, b);
+  };
+  const std::optional<Band> here = behind(scene_), there = behind(other);
+  if (!here || !there) return {V::notJudged, 0, "the control, " + control + ", was not measured"};
+  // The two scenes are independent, so half widths add as squares.
+  const Band band{here->mean - there->mean, std::hypot(here->halfWidth, there->halfWidth)};
+  return above(band, std::log(factor),
+               fmt::format("{} loss of {} over {}: {:.2g} here, {:.2g} in {}", nameOf(metric), scene_.rowOf(a),
+                           scene_.rowOf(b), std::exp(here->mean), std::exp(there->mean), control));
+}
+
+}  // namespace wavecrest
