@@ -47,9 +47,9 @@ class Tally:
         self.seconds[name] = time.monotonic() - start
         times = os.times()
         cpu = times.children_user + times.children_system
-        cores = (cpu - self.cpu) / max(self.seconds[name], 1e-3)
+        busy = f", {(cpu - self.cpu) / self.seconds[name]:.1f} cores busy" if self.seconds[name] >= 1 else ""
         self.cpu = cpu
-        print(f"=== {name}: {outcome} in {self.seconds[name]:.0f} s, {cores:.1f} cores busy", flush=True)
+        print(f"=== {name}: {outcome} in {self.seconds[name]:.0f} s{busy}", flush=True)
 
 
 def run(tally, name, command, **environment):
