@@ -154,9 +154,10 @@ class Panel:
         for value, words in self.across.ticks:
             x, half = self.x(value), LETTER / 2 * len(re.sub("<[^>]*>", "", words))
             parts.append(self.line("grid", x, self.top, x, self.bottom))
-            middle = min(x, WIDTH - half)  # the picture has the whole of a label at its edge
+            at_edge = x + half > WIDTH  # the picture has the whole of such a label
+            middle = WIDTH - half if at_edge else x
             if middle - half >= free:
-                parts.append(label(middle, self.bottom + 19, words, "middle"))
+                parts.append(label(WIDTH if at_edge else x, self.bottom + 19, words, "end" if at_edge else "middle"))
                 free = middle + half
         if floor and self.up.shows(floor):
             parts.append(self.line("floor", self.left, self.y(floor), self.right, self.y(floor)))
