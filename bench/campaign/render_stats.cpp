@@ -233,8 +233,8 @@ Json decisionsJson(const Scene& scene, const RenderSettings& settings, const Ren
   }
   if (!settings.samplerIsChosen) {
     const std::string name(toString(statistics.sampler));
-    const bool unguided = method == Method::gpt && !mayLearn(settings);  // path tracing
-    all.push_back(decision("sampler", name, whySampler(unguided ? Method::pt : method, statistics.sampler)));
+    const Method traced = tracingMethod(settings, method);
+    all.push_back(decision("sampler", name, whySampler(traced, statistics.sampler)));
   }
   const uint64_t pixels = uint64_t{scene.film.imageWidth()} * scene.film.imageHeight();
   const bool merges = strategiesOf(method).merge;

@@ -68,9 +68,16 @@ void forEachBlock(const Image& image, Visit&& visit) {
   }
 }
 
-// The variance of sums over blocks, over what it would be if pixels were independent, at least 1: pixels share photons,
-// and under every filter but a box samples as well. One figure for the image, as a block has only three samples of
-// noise.
+// The variance that three samples of noise give one value of an image.
+double varianceAt(const NoiseSamples& noises, size_t i) {
+  double sum = 0;
+  for (const Image& noise : noises) sum += std::pow(static_cast<double>(noise.pixels[i]), 2);
+  return sum / 3;
+}
+
+// How many times the variance of the sum over a block is what it would be if its pixels were independent, at least 1.
+// Pixels share photons; with every filter but a box they also share samples. It is estimated from all blocks of the
+// image together, as a single block has only three samples of noise.
 double varianceFactor(const NoiseSamples& noises) {
   double ofSums = 0, ofSamples = 0;
   forEachBlock(noises.front(), [&](const std::vector<size_t>& samples) {
@@ -93,13 +100,11 @@ Image significantBias(const Image& mean, const NoiseSamples& noises, const Pilot
   Image bias = mean;
   forEachBlock(mean, [&](const std::vector<size_t>& samples) {
     // Difference of the sums over the block, and the variance that noise gives it.
-    double difference = 0, own = 0, referenceOwn = 0;
+    double difference = 0, variance = 0;
     for (const size_t i : samples) {
       difference += static_cast<double>(mean.pixels[i]) - static_cast<double>(reference.mean.pixels[i]);
-      for (const Image& noise : noises) own += std::pow(static_cast<double>(noise.pixels[i]), 2) / 3;
-      for (const Image& noise : reference.noises) referenceOwn += std::pow(static_cast<double>(noise.pixels[i]), 2) / 3;
+      variance += factor * varianceAt(noises, i) + referenceFactor * varianceAt(reference.noises, i);
     }
-    const double variance = factor * own + referenceFactor * referenceOwn;
     const bool significant = std::abs(difference) > kSignificant * std::sqrt(variance);
     const double value = significant ? difference / static_cast<double>(samples.size()) : 0;
     for (const size_t i : samples) bias.pixels[i] = static_cast<float>(value);

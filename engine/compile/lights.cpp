@@ -37,19 +37,6 @@ double areaOf(const PrimitiveRecord<S>& primitive) {
   return static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::quad ? parallelogram : parallelogram / 2;
 }
 
-// Shares of the light picks of emitters of these powers. Black emitters get none, unless all are black.
-std::vector<double> sharesByPower(const std::vector<double>& power) {
-  std::vector<double> shares = evenedShares(power, kEvenShare);
-  const auto all = static_cast<double>(power.size());
-  const auto lit = static_cast<double>(std::ranges::count_if(power, [](double p) { return p > 0; }));
-  if (lit == 0 || lit == all) return shares;
-  // The others share the even part.
-  for (size_t i = 0; i < shares.size(); ++i) {
-    shares[i] = power[i] > 0 ? shares[i] + kEvenShare * (1 / lit - 1 / all) : 0;
-  }
-  return shares;
-}
-
 Double3 positionOf(const ProjectorEmitter& projector) {
   const Matrix4& m = projector.toWorld;
   return {m[0][3], m[1][3], m[2][3]};
@@ -142,7 +129,7 @@ class LightCollector {
     }
     // The emitters' shares of all picks.
     if (lights_.emitters != 0) {
-      PickedLights<S> picked = withPicks(lights_, sharesByPower(power));
+      PickedLights<S> picked = withPicks(lights_, evenedShares(power, kEvenShare, EvenAmong::lit));
       lights_.records = std::move(picked.records);
       lights_.table = std::move(picked.table);
     }
@@ -358,14 +345,15 @@ PickedLights<S> withPicks(const Lights<S>& lights, const std::vector<double>& sh
 template PickedLights<float> withPicks(const Lights<float>&, const std::vector<double>&);
 template PickedLights<double> withPicks(const Lights<double>&, const std::vector<double>&);
 
-std::vector<double> evenedShares(const std::vector<double>& weights, double even) {
-  const auto count = static_cast<double>(weights.size());
+std::vector<double> evenedShares(const std::vector<double>& weights, double even, EvenAmong among) {
   const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-  std::vector<double> shares;
   // Weights that are all 0 count as equal.
+  const auto takesPart = [&](double weight) { return among == EvenAmong::all || total == 0 || weight > 0; };
+  const auto count = static_cast<double>(std::ranges::count_if(weights, takesPart));
+  std::vector<double> shares;
   for (const double weight : weights) {
     const double own = total > 0 ? weight / total : 1 / count;
-    shares.push_back((1 - even) * own + even / count);
+    shares.push_back(takesPart(weight) ? (1 - even) * own + even / count : 0);
   }
   return shares;
 }

@@ -40,8 +40,10 @@ struct PickedLights {
 // The lights with these picks of emitters: shares that are at least 0 and add up to 1.
 template <class S>
 PickedLights<S> withPicks(const Lights<S>& lights, const std::vector<double>& shares);
-// Shares of which the part `even`, 0 to 1, is the same for all, and the rest in proportion to `weights`, at least 0.
-std::vector<double> evenedShares(const std::vector<double>& weights, double even);
+// Shares of which the part `even`, 0 to 1, is divided equally, among all or among those whose weight is not 0; the rest
+// is in proportion to `weights`, at least 0. If all weights are 0, all shares are equal.
+enum class EvenAmong { all, lit };
+std::vector<double> evenedShares(const std::vector<double>& weights, double even, EvenAmong among);
 
 // Gives each textured light a texture of its own in the coordinates of its primitive, which is what sampling a light
 // knows; appended to the textures. Throws SceneError for a textured sphere.

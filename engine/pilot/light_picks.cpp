@@ -68,7 +68,7 @@ void pickLightsByView(RenderPlan<S>& plan, const RenderSettings& settings, const
     sum += weights.back();
   }
   for (double& weight : weights) weight = sum > 0 ? std::round(kParts * weight / sum) : 0;
-  setPicks(plan, evenedShares(weights, kEvenShare));
+  setPicks(plan, evenedShares(weights, kEvenShare, EvenAmong::all));
 }
 template void pickLightsByView(RenderPlan<float>&, const RenderSettings&, const FilmArea&);
 template void pickLightsByView(RenderPlan<double>&, const RenderSettings&, const FilmArea&);

@@ -181,12 +181,15 @@ inline SamplerKind bestSampler(Method method) {
   return without ? SamplerKind::independent : SamplerKind::sobol;
 }
 
-// The sampler of settings that name none. What trials choose takes Sobol points where they serve it. Without a guide
-// gpt is path tracing.
+// By which method paths are traced: gpt without a guide is path tracing. method: that of the settings, or the one that
+// trials chose.
+inline Method tracingMethod(const RenderSettings& settings, Method method) {
+  return method == Method::gpt && !mayLearn(settings) ? Method::pt : method;
+}
+
+// The sampler of settings that name none. What trials choose takes Sobol points where they serve it.
 inline SamplerKind bestSampler(const RenderSettings& settings) {
-  if (areTried(settings)) return SamplerKind::sobol;
-  const bool unguided = settings.method == Method::gpt && !mayLearn(settings);
-  return bestSampler(unguided ? Method::pt : settings.method);
+  return areTried(settings) ? SamplerKind::sobol : bestSampler(tracingMethod(settings, settings.method));
 }
 
 // Whether the method's walks end by a roulette that can be chosen. Chains walk as far as their strategies say, or by
