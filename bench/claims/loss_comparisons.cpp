@@ -82,9 +82,9 @@ double LossComparisons::steepness(const std::string& method, const std::string& 
   return slopes.empty() ? 0 : std::max(0.0, -meanBand(slopes).mean);
 }
 
-// A comparison of `a` and `b` that fails because the loss of `a` is not within the factor of that of `b`. Where it
-// falls faster, so that at these rates it would be within the time that the study had, time is what it lacks. Near
-// the reference's noise every curve is flat, so `b` has to be above it.
+// Turns a failed comparison into "not reached in this time" where the loss of `a` is more than `factor` times that of
+// `b`, but falls faster, and at these rates would be within the factor in the time that the study had. Near the
+// reference's noise every curve is flat, so nothing changes if the loss of `b` is there.
 Comparison LossComparisons::withTime(Comparison comparison, const std::string& metric, const std::string& a,
                                      const std::string& b, double factor) const {
   if (comparison.verdict != V::fails || nearFloor(metric, scene_.logLosses(b, metric))) return comparison;
@@ -111,7 +111,7 @@ Comparison LossComparisons::worseHere(const std::string& metric, const std::stri
   };
   const std::optional<Band> here = behind(scene_), there = behind(other);
   if (!here || !there) return {V::notJudged, 0, "the control, " + control + ", was not measured"};
-  // The two scenes are independent, so half widths add as squares.
+  // The two scenes are independent, so the squares of their half widths add up.
   const Band band{here->mean - there->mean, std::hypot(here->halfWidth, there->halfWidth)};
   return above(band, std::log(factor),
                fmt::format("{} loss of {} over {}: {:.2g} here, {:.2g} in {}", nameOf(metric), scene_.rowOf(a),

@@ -10,7 +10,7 @@ struct MemoryUse {
   size_t scene = 0;          // primitives, attributes, materials, textures, lights, and the hierarchy
   size_t waves = 0;          // columns of one wave per thread
   size_t film = 0;           // list of the pixels, and their sums
-  size_t splats = 0;         // sums of t = 1, in at most kSplatFilms films; of more threads the queue that each sorts
+  size_t splats = 0;         // sums of t = 1, in at most kSplatFilms films; with more threads also a queue of each
   size_t lightVertices = 0;  // of a wave per thread where they are connected, and with a photon map of all waves
   size_t photonMap = 0;
   size_t learned = 0;  // what a guide holds at most; pages that it has not reached yet take no memory

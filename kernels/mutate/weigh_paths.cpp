@@ -272,8 +272,8 @@ WAVECREST_NOINLINE void weighWave(const StageContext<S>& context, Wave<S>& wave)
       ratio = select(somewhere, zeroUnless(possible, min(quotient, Double(1e30))), ratio);
       storeWhere(Float(1), somewhere, chains.target, lane);
     }
-    // What the film gets: the colour at the proposed pixel, scaled so that its luminance is the ratio. What is no
-    // number stays none, for acceptMutations to count.
+    // What the film gets: the colour at the proposed pixel, scaled so that its luminance is the ratio. NaN and
+    // infinity are passed on, so that acceptMutations counts them.
     const Mask number = luminance - luminance == Real(0);
     const Vec3<Real> colour = select(andNot(active & pixel.onFilm, number), value, zeroUnless(lit, value));
     storeWhere(colour, active, wave.radiance.red, wave.radiance.green, wave.radiance.blue, lane);

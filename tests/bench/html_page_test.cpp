@@ -218,7 +218,7 @@ TEST(Answer, namesTheMethodsThatAreFirstToTheTarget) {
   EXPECT_LT(renderReport(report).find("class=\"answer\""), renderReport(report).find("<h2>Summary</h2>"));
 }
 
-// Images of fewer pixels than a metric's window have no score.
+// An image that is smaller than a metric's window has no score.
 TEST(Answer, leavesOutScenesWithoutAScore) {
   ConvergenceReport report = sampleReport();
   EXPECT_TRUE(contains(renderAnswer(report), "SSIM"));

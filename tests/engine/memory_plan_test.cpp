@@ -174,8 +174,9 @@ TEST(MemoryPlan, hasAQueueOfSplatsForEachOfManyThreads) {
   }
 }
 
-// Camera paths of vcm whose light paths are in no store of their own are connected with those that their thread
-// collects: as many as a wave has, though the iteration has fewer.
+// In vcm a thread copies the light vertices that its wave of camera paths is connected with into a store of its own,
+// unless a light wave's store holds just these. It copies those of as many light paths as the wave has camera paths,
+// even if the iteration has fewer light paths: some are then copied several times.
 TEST(MemoryPlan, hasRoomForLightVerticesThatAreCollected) {
   const Scene scene = sceneFile("cornell-mirror", 160, 120);
   RenderSettings settings = plannedSettings(Method::vcm);

@@ -51,7 +51,8 @@ TEST(Checkerboard, OfReflectancesAbove1IsAWarning) {
   EXPECT_NE(scene.warnings[0].find("up to 1.4"), std::string::npos) << scene.warnings[0];
 }
 
-// What Mitsuba 3.9 renders, whatever its documentation says. Mitsuba 0.6 evaluates a texture for all uses alike.
+// Mitsuba 3.9 exchanges the colours, though its documentation does not say so. In Mitsuba 0.6 a texture has the same
+// values whether a colour or a number is read from it.
 TEST(Checkerboard, SwapsItsColoursWhereANumberIsAskedForButInOldFiles) {
   const std::string body = R"(<texture type="checkerboard" id="t"/><shape type="sphere"><bsdf type="mask">
     <ref id="t" name="opacity"/><bsdf type="diffuse"><ref id="t" name="reflectance"/></bsdf></bsdf></shape>)";
