@@ -18,6 +18,7 @@
 #include "library/option_ranges.h"
 #include "metrics/image/image_io.h"
 #include "metrics/metric_list.h"
+#include "metrics/prepared_reference.h"
 #include "metrics/pu21.h"
 
 namespace wavecrest {
@@ -81,17 +82,19 @@ void noteWindows(const CompareOptions& options, const ImageFile& reference, cons
       options.reference, x, y, file, testX, testY);
 }
 
-// A note where an image is brighter than what the PU21 metrics tell apart.
+// A note where an image is brighter than what the PU21 metrics tell apart. Excluded pixels are not counted.
 void notePu21Range(const CompareOptions& options, const std::vector<const Metric*>& metrics, const std::string& file,
                    const ImageFile& image) {
   const bool measured =
       std::ranges::any_of(metrics, [](const Metric* metric) { return metric->name.starts_with("pu21"); });
-  if (!measured || image.encoding != Encoding::linear) return;
+  if (!measured) return;
   const double brightest = kPu21Brightest / (kPu21WhiteLuminance * std::exp2(options.exposure));
+  const Image light = linearLight(image);
   size_t count = 0;
-  const std::vector<float>& pixels = image.image.pixels;
-  for (size_t i = 0; i < pixels.size(); i += 3)
-    count += std::max({pixels[i], pixels[i + 1], pixels[i + 2]}) > brightest;
+  for (size_t pixel = 0; pixel < light.pixelCount(); ++pixel) {
+    const float* const rgb = light.pixels.data() + 3 * pixel;
+    if (finitePixel(image.image, pixel)) count += std::max({rgb[0], rgb[1], rgb[2]}) > brightest;
+  }
   if (count == 0) return;
   tell(
       "wavecrest: note: {} of {} pixels of {} are brighter than {:.0f} cd/m2, where PU21 ends, and count as that; a "
@@ -255,8 +258,9 @@ void addCompareCommand(CommandLine& program, int& exitCode) {
   command.add("--map", options->mapFolder, "write a false-colour PNG of each metric into this folder");
   command.add("--html", options->html, "write scores, images and maps as one page; - for stdout");
   command.add("--crop", options->crop, "compare this part only: X,Y,WIDTHxHEIGHT");
-  command.add("--exposure", options->exposure, "stops applied before conversion to 8 bits").between(kExposureRange);
-  command.addFlag("--gamma", options->gammaCorrected, "rmse and relmse on gamma-corrected 8-bit values");
+  command.add("--exposure", options->exposure, "stops applied to light before it becomes 8-bit codes or PU21")
+      .between(kExposureRange);
+  command.addFlag("--gamma", options->gammaCorrected, "rmse, relmse and mape on gamma-corrected 8-bit values");
   options->limits.resize(metricList().size());
   for (size_t i = 0; i < metricList().size(); ++i) {
     const Metric& metric = metricList()[i];

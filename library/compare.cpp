@@ -23,11 +23,17 @@ bool isOf8Bits(const std::vector<float>& values) {
   });
 }
 
-// An image of the interface as one that was read from a file. name: for messages.
+// An image of the interface as one that was read from a file. name: for messages. Throws ImageError.
 ImageFile toFile(const std::string& name, Image image) {
   checkPixels(name, image);
   Encoding encoding = Encoding::linear;
-  if (image.srgb) encoding = isOf8Bits(image.pixels) ? Encoding::srgb8 : Encoding::srgb16;
+  if (image.srgb) {
+    // NaN is refused as well.
+    if (!std::ranges::all_of(image.pixels, [](float value) { return value >= 0 && value <= 1; })) {
+      throw ImageError(name, "sRGB value outside 0..1", "expected codes over 255 or 65535");
+    }
+    encoding = isOf8Bits(image.pixels) ? Encoding::srgb8 : Encoding::srgb16;
+  }
   return {.image = toImage(std::move(image)), .encoding = encoding, .metadata = {}};
 }
 

@@ -3,10 +3,10 @@
 // Each metric's part of the reference is made when it is first asked for, once, whichever thread asks; afterwards one
 // PreparedReference serves thousands of comparisons from any number of threads.
 //
-// Which numbers a metric sees: rmse and relmse see images as they were read (two coded images as codes in 0..1; a coded
-// and a linear one both as linear light), HDR-FLIP and the PU21 metrics linear light, the others 8-bit sRGB codes.
-// A pixel with a NaN or infinity in either image is excluded: the error metrics leave it out of their means, for the
-// others the test image takes the reference's colour there (black where the reference itself is not finite).
+// Which numbers a metric sees: rmse, relmse and mape see images as they were read (two coded images as codes in 0..1; a
+// coded and a linear one both as linear light), HDR-FLIP and the PU21 metrics linear light, the others 8-bit sRGB
+// codes. A pixel with a NaN or infinity in either image is excluded: the error metrics leave it out of their means, for
+// the others the test image takes the reference's colour there (black where the reference itself is not finite).
 #pragma once
 
 #include <memory>
@@ -27,7 +27,7 @@ namespace wavecrest {
 
 struct ComparisonSettings {
   double exposure = 0;                // stops, applied to light before it becomes 8-bit codes or PU21
-  bool gammaCorrectedErrors = false;  // rmse and relmse on 8-bit codes instead of the values as read
+  bool gammaCorrectedErrors = false;  // rmse, relmse and mape on 8-bit codes instead of the values as read
   Isa isa = bestIsa();
 };
 

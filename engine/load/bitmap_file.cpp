@@ -1,5 +1,6 @@
 #include "engine/load/bitmap_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
@@ -45,6 +46,12 @@ ImageFile readImageFile(const std::filesystem::path& path, const SourceLocation&
     if (format == ".bmp") return decodeBmp(name, bytes);
     if (format == ".tga") return decodeTga(name, bytes);
     if (format == ".jpg" || format == ".jpeg") return decodeJpeg(name, bytes);
+    const bool known =
+        std::ranges::any_of(kSignatures, [&](const Signature& signature) { return signature.extension == format; });
+    if (!known) {
+      throw ImageError(name, format.empty() ? "unknown image format" : "unknown image format '" + format + "'",
+                       "expected EXR, PFM, HDR, PNG, JPEG, BMP or TGA");
+    }
     return decodeImage(name, format, {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
   } catch (const ImageError& error) {
     throw LoadError(where, error.what());

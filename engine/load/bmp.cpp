@@ -1,5 +1,7 @@
 #include "engine/load/bmp.h"
 
+#include <array>
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 
@@ -12,6 +14,7 @@ struct BmpLayout {
   uint32_t dataOffset = 0, headerSize = 0, compression = 0, colorsUsed = 0;
   int32_t width = 0, height = 0;  // a negative height: the top row comes first
   uint16_t bitsPerPixel = 0;
+  std::array<uint64_t, 3> channelAt{2, 1, 0};  // the byte of red, green and blue within a pixel
 };
 
 // The number at byte `at`, on a little-endian machine. The caller has checked that the file is long enough.
@@ -22,29 +25,45 @@ T littleEndian(std::span<const char> bytes, size_t at) {
   return value;
 }
 
+// The byte of red, green and blue within a pixel, by the bit masks after the first 40 bytes of the info header.
+std::array<uint64_t, 3> readMasks(const std::string& path, std::span<const char> bytes, unsigned bitsPerPixel) {
+  std::array<uint64_t, 3> channelAt{};
+  size_t at = 54;  // within the file
+  for (uint64_t& channel : channelAt) {
+    const uint32_t mask = at + 4 <= bytes.size() ? littleEndian<uint32_t>(bytes, at) : 0;
+    const auto shift = static_cast<unsigned>(std::countr_zero(mask));
+    if (shift >= bitsPerPixel || shift % 8 != 0 || mask >> shift != 0xff) {
+      throw ImageError(path, "BMP whose masks are not whole bytes", "expected 8 bits for each channel");
+    }
+    channel = shift / 8;
+    at += 4;
+  }
+  return channelAt;
+}
+
 // Reads and checks the headers. ImageError if the file is no BMP, or of a kind that decodeBmp cannot decode.
 BmpLayout readLayout(const std::string& path, std::span<const char> bytes) {
   constexpr size_t kFileHeader = 14, kInfoHeader = 40;
   if (bytes.size() < kFileHeader + kInfoHeader || bytes[0] != 'B' || bytes[1] != 'M') {
     throw ImageError(path, "no BMP header", "expected a BMP file");
   }
-  const BmpLayout layout{.dataOffset = littleEndian<uint32_t>(bytes, 10),
-                         .headerSize = littleEndian<uint32_t>(bytes, 14),
-                         .compression = littleEndian<uint32_t>(bytes, 30),
-                         .colorsUsed = littleEndian<uint32_t>(bytes, 46),
-                         .width = littleEndian<int32_t>(bytes, 18),
-                         .height = littleEndian<int32_t>(bytes, 22),
-                         .bitsPerPixel = littleEndian<uint16_t>(bytes, 28)};
+  BmpLayout layout{.dataOffset = littleEndian<uint32_t>(bytes, 10),
+                   .headerSize = littleEndian<uint32_t>(bytes, 14),
+                   .compression = littleEndian<uint32_t>(bytes, 30),
+                   .colorsUsed = littleEndian<uint32_t>(bytes, 46),
+                   .width = littleEndian<int32_t>(bytes, 18),
+                   .height = littleEndian<int32_t>(bytes, 22),
+                   .bitsPerPixel = littleEndian<uint16_t>(bytes, 28)};
   // Pixels of 8 bits are indices into the palette; pixels of 24 and 32 bits are colours.
   const bool palette = layout.bitsPerPixel == 8, direct = layout.bitsPerPixel == 24 || layout.bitsPerPixel == 32;
-  // 3: masks, which are blue, green, red, alpha in every file of 32 bits that programs write.
-  const bool plain = layout.compression == 0 || (layout.compression == 3 && layout.bitsPerPixel == 32);
-  if (layout.headerSize < kInfoHeader || !(palette || direct) || !plain) {
+  const bool masks = layout.compression == 3 && direct;
+  if (layout.headerSize < kInfoHeader || !(palette || direct) || !(layout.compression == 0 || masks)) {
     throw ImageError(
         path,
         "BMP of " + std::to_string(layout.bitsPerPixel) + " bits and compression " + std::to_string(layout.compression),
         "expected 8, 24 or 32 bits, uncompressed");
   }
+  if (masks) layout.channelAt = readMasks(path, bytes, layout.bitsPerPixel);
   return layout;
 }
 
@@ -87,8 +106,8 @@ ImageFile decodeBmp(const std::string& path, std::span<const char> bytes) {
         }
         at = paletteAt + uint64_t{4} * index;
       }
-      // The bytes are blue, green and red; a fourth byte is ignored.
-      for (const uint64_t channel : {2, 1, 0}) {
+      // Without masks the bytes are blue, green and red. A fourth byte is ignored.
+      for (const uint64_t channel : layout.channelAt) {
         file.image.pixels.push_back(static_cast<float>(static_cast<unsigned char>(bytes[at + channel])) / 255.0f);
       }
     }

@@ -1,4 +1,4 @@
-// BMP files: 8 bits with a palette, 24 and 32 bits, uncompressed.
+// BMP files: 8 bits with a palette, 24 and 32 bits, also with bit masks of whole bytes; uncompressed.
 #pragma once
 
 #include <span>

@@ -42,21 +42,23 @@ struct Comparison {
 };
 
 struct CompareOptions {
-  double exposure = 0;                // stops, -100 to 100, applied to light before it becomes 8-bit codes
-  bool gammaCorrectedErrors = false;  // rmse and relmse on 8-bit codes instead of linear light
+  double exposure = 0;                // stops, -100 to 100, applied to light before it becomes 8-bit codes or PU21
+  bool gammaCorrectedErrors = false;  // rmse, relmse and mape on 8-bit codes instead of linear light
 };
 
 // A reference image and what the metrics derive from it alone: worth keeping for many comparisons, which may run on
 // several threads.
 class WAVECREST_EXPORT Reference {
  public:
-  // name: for messages. Throws Error for an image without a finite pixel and for options out of range.
+  // name: for messages. Throws Error for an image without a finite pixel, for sRGB values outside 0..1 and for options
+  // out of range.
   explicit Reference(Image image, const CompareOptions& options = {}, const std::string& name = "reference");
   ~Reference();
   Reference(Reference&&) noexcept;
   Reference& operator=(Reference&&) noexcept;
 
-  // metrics: empty for those that are measured by default. Throws Error for another size and for unknown metrics.
+  // metrics: empty for those that are measured by default. Throws Error for another size, for sRGB values outside
+  // 0..1 and for unknown metrics.
   Comparison compare(Image test, const std::vector<std::string>& metrics = {}, bool withMaps = false,
                      const std::string& name = "test") const;
 

@@ -23,7 +23,7 @@ size_t mirrored(int64_t index, size_t length) {
 
 }  // namespace
 
-ResizeTable::ResizeTable(size_t inputs, size_t outputs) : inputLength(inputs), outputLength(outputs) {
+ResizeTable::ResizeTable(size_t inputs, size_t outputs) {
   const double scale = static_cast<double>(outputs) / static_cast<double>(inputs);
   const double narrowed = std::min(scale, 1.0), reach = 2 / narrowed;
   if (inputs == outputs) {

@@ -13,10 +13,9 @@ namespace wavecrest::vdp {
 // Output sample i is the sum over taps of weight * in[index]. All outputs have the same number of taps; unused ones
 // weigh nothing. Both orders are kept: by output for columns, by tap for rows.
 struct ResizeTable {
-  ResizeTable(size_t inputLength, size_t outputLength);
+  ResizeTable(size_t inputs, size_t outputs);
 
-  size_t inputLength, outputLength;
-  size_t taps = 0, stride = 0;  // stride: outputLength rounded up to whole vectors
+  size_t taps = 0, stride = 0;  // stride: outputs rounded up to whole vectors
   std::vector<uint32_t> indexByOutput, indexByTap;
   std::vector<float> weightByOutput, weightByTap;
 };

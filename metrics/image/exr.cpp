@@ -215,11 +215,11 @@ Image readLayer(const std::string& path, Imf::InputFile& input, uint64_t fileByt
   const Imath::Box2i window = input.header().dataWindow();
   const auto width = static_cast<uint64_t>(int64_t{window.max.x} - window.min.x + 1);
   const auto height = static_cast<uint64_t>(int64_t{window.max.y} - window.min.y + 1);
-  // A sample has at least two bytes. ZIP shrinks at most about 1000 times, the run-length and wavelet coders less than
-  // 4096.
+  // A sample has at least two bytes. DWAA and DWAB shrink at most about 33,000 times, the other coders less than 4096
+  // times.
   const size_t full = colour == codecs::ExrColour::lumaChroma ? 1 : names.size();
   codecs::checkSize(path, width, height, 0, 0);
-  codecs::checkSize(path, width, height, width * height * 2 * full / 4096, fileBytes);
+  codecs::checkSize(path, width, height, width * height * 2 * full / 65536, fileBytes);
 
   // OpenEXR converts every sample type to float, and interleaves the channels through the strides.
   Image image{static_cast<uint32_t>(width), static_cast<uint32_t>(height), 3, {}};

@@ -119,15 +119,17 @@ class ScanLines {
     }
   }
 
-  // Plain pixels; (1, 1, 1, n) repeats the pixel before it n times, shifted by 8 bits for each consecutive run.
+  // Plain pixels; (1, 1, 1, n) repeats the pixel before it n times. The n of consecutive runs are the digits of one
+  // count to base 256, the lowest first.
   void readPlain() {
     unsigned shift = 0;
     for (size_t x = 0; x < line_.size();) {
       Pixel pixel;
       for (unsigned char& byte : pixel) byte = take();
       if (pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1) {
-        const size_t count = shift < 24 ? size_t{pixel[3]} << shift : 0;
-        if (x == 0 || count == 0 || count > line_.size() - x) failRun();
+        if (x == 0 || shift >= 32) failRun();
+        const size_t count = size_t{pixel[3]} << shift;
+        if (count > line_.size() - x) failRun();
         for (size_t end = x + count; x < end; ++x) line_[x] = line_[x - 1];
         shift += 8;
       } else {

@@ -89,7 +89,7 @@ def compare(
     """Measures a test image against a reference by the named metrics (default: those of `wavecrest compare`).
 
     Images are files, or arrays of height x width x 3: floats are linear light, uint8 are sRGB codes. Whatever has numpy's
-    array protocol will do. maps: also where the difference is. exposure: stops, before light becomes 8-bit codes. gamma:
-    rmse and relmse on those codes.
+    array protocol will do. maps: also where the difference is. exposure: stops, before light becomes 8-bit codes or
+    PU21. gamma: rmse, relmse and mape on those codes.
     """
     return Reference(reference, exposure=exposure, gamma=gamma).compare(test, metrics, maps=maps)

@@ -1,4 +1,4 @@
-// Comparisons of the interface: exposures that are refused, and how many bits the codes of images have.
+// Comparisons of the interface: exposures and sRGB values that are refused, and how many bits the codes of images have.
 #include "wavecrest/compare.h"
 
 #include <gtest/gtest.h>
@@ -29,6 +29,19 @@ TEST(Comparisons, exposuresOutOfRangeAreRefused) {
   EXPECT_EQ(refusalOf<Error>([] { srgbCodes(constant(0.5f, false), -101); }),
             "--exposure -101: expected a number from -100 to 100");
   EXPECT_NO_THROW(Reference(constant(0.5f, false), {.exposure = -100}));
+}
+
+TEST(Comparisons, sRgbValuesOutsideTheirRangeAreRefused) {
+  for (const float wrong : {1.2f, -0.1f, std::nanf("")}) {
+    Image image = constant(0.5f, true);
+    image.pixels[7] = wrong;
+    EXPECT_EQ(refusalOf<Error>([&] { rmse(constant(0.5f, true), image); }),
+              "test: sRGB value outside 0..1; expected codes over 255 or 65535");
+    EXPECT_EQ(refusalOf<Error>([&] { rmse(image, constant(0.5f, true)); }),
+              "reference: sRGB value outside 0..1; expected codes over 255 or 65535");
+    image.srgb = false;
+    EXPECT_NO_THROW(rmse(constant(0.5f, false), image)) << "linear light";
+  }
 }
 
 // Whole codes of 8 bits differ by 1/255, their values as floats by 3e-8 more or less.

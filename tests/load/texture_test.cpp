@@ -198,7 +198,8 @@ TEST(Bitmap, MistakesAreErrorsWhereTheFileIsNamed) {
   expectTextureError(folder, file("none.jpg"), "not found");
   expectTextureError(folder, file("broken.png"), "broken.png");
   expectTextureError(folder, file("broken.jpg"), "damaged JPEG");
-  expectTextureError(folder, file("note.txt"), "unknown image format '.txt'");
+  expectTextureError(folder, file("note.txt"),
+                     "unknown image format '.txt'; expected EXR, PFM, HDR, PNG, JPEG, BMP or TGA");
   expectTextureError(folder, file("grey.png") + R"(<string name="wrap_mode" value="bend"/>)", "unknown wrap_mode");
   expectTextureError(folder, file("grey.png") + R"(<string name="filter_type" value="cubic"/>)",
                      "unknown filter_type \"cubic\"");
@@ -224,6 +225,20 @@ std::string bmpOf(bool palette, bool topFirst) {
   if (palette) return bytes + red + blue + std::string(topFirst ? "\0\0\0\0\1\0\0\0" : "\1\0\0\0\0\0\0\0", 8);
   return bytes + (topFirst ? red + blue : blue + red);
 }
+// One pixel in a row of four bytes. masks: of red, green and blue, in a V5 header. Without masks the header has 40
+// bytes.
+std::string bmpOfPixel(uint16_t bits, std::string_view row, const std::vector<uint32_t>& masks = {}) {
+  const uint32_t header = masks.empty() ? 40u : 124u;
+  std::string bytes = "BM";
+  const auto word = [&](uint32_t value) { appendValue<uint32_t>(bytes, value, false); };
+  for (const uint32_t value : {14 + header + 4, 0u, 14 + header, header, 1u, 1u}) word(value);
+  appendValue<uint16_t>(bytes, 1, false);
+  appendValue<uint16_t>(bytes, bits, false);
+  for (const uint32_t value : {masks.empty() ? 0u : 3u, 4u, 0u, 0u, 0u, 0u}) word(value);
+  for (const uint32_t mask : masks) word(mask);
+  bytes.resize(14 + header, '\0');
+  return bytes + std::string(row);
+}
 std::string tgaOf(bool runs, bool topFirst) {
   std::string bytes(18, '\0');
   bytes[2] = runs ? 10 : 2;
@@ -243,6 +258,35 @@ TEST(Bitmap, BmpOfEachLayout) {
       folder.write("two.bmp", bmpOf(palette, topFirst));
       EXPECT_EQ(bitmapOf(folder, "two.bmp").bitmap->pixels, kRedOverBlue) << palette << topFirst;
     }
+  }
+}
+
+TEST(Bitmap, MasksOfABmpSayWhereItsChannelsAre) {
+  const Folder folder;
+  const std::string cases[] = {
+      bmpOfPixel(32, {"\0\0\xff\x80", 4}),
+      bmpOfPixel(32, {"\0\0\xff\x80", 4}, {0xff0000, 0xff00, 0xff}),
+      bmpOfPixel(32, {"\x80\0\0\xff", 4}, {0xff000000, 0xff0000, 0xff00}),
+      bmpOfPixel(24, {"\xff\0\0\0", 4}, {0xff, 0xff00, 0xff0000}),
+  };
+  for (const std::string& bytes : cases) {
+    folder.write("red.bmp", bytes);
+    EXPECT_EQ(bitmapOf(folder, "red.bmp").bitmap->pixels, (std::vector<float>{1, 0, 0})) << (&bytes - cases);
+  }
+}
+
+TEST(Bitmap, MasksOfABmpThatAreNotWholeBytesAreErrors) {
+  const Folder folder;
+  const std::string cases[] = {
+      bmpOfPixel(32, {"\0\0\0\0", 4}, {0x7c00, 0x3e0, 0x1f}),
+      bmpOfPixel(32, {"\0\0\0\0", 4}, {0xff0, 0xff00, 0xff}),
+      bmpOfPixel(32, {"\0\0\0\0", 4}, {0xff0000, 0xff00, 0}),
+      bmpOfPixel(24, {"\0\0\0\0", 4}, {0xff000000, 0xff00, 0xff}),
+      withByte(bmpOf(false, false), 30, 3),  // ends inside the masks
+  };
+  for (const std::string& bytes : cases) {
+    folder.write("masks.bmp", bytes);
+    expectTextureError(folder, R"(<string name="filename" value="masks.bmp"/>)", "masks are not whole bytes");
   }
 }
 
@@ -321,13 +365,43 @@ TEST(Bitmap, WrapModeIsThatOfAnAxisWithoutItsOwn) {
       "differ");
 }
 
-TEST(Bitmap, TruncatedJpegIsAnError) {
+std::string halvesJpeg() {
   std::ifstream in(std::string(WAVECREST_TEST_DATA) + "/halves.jpg", std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Bitmap, TruncatedJpegIsAnError) {
+  const std::string bytes = halvesJpeg();
   ASSERT_GT(bytes.size(), 300u);
   const Folder folder;
   folder.write("half.jpg", bytes.substr(0, bytes.size() - 40));
   expectTextureError(folder, R"(<string name="filename" value="half.jpg"/>)", "damaged JPEG");
+}
+
+// The frame header begins with a marker of two bytes, its length, and the precision. Height, width, the number of
+// components and three bytes for each of them follow.
+TEST(Bitmap, WhatAJpegUnpacksToIsBounded) {
+  std::string bytes = halvesJpeg();
+  const size_t frame = bytes.find(std::string("\xff\xc0\0\x11", 4));
+  ASSERT_NE(frame, std::string::npos);
+  bytes.replace(frame + 5, 4, "\x4e\x20\x4e\x20");  // 20000 in two bytes, twice
+  const Folder folder;
+  folder.write("large.jpg", bytes);
+  expectTextureError(folder, R"(<string name="filename" value="large.jpg"/>)", "announces 20000 x 20000 pixels");
+  folder.write("large.jpg", bytes + std::string(400'000, '\0'));
+  expectTextureError(folder, R"(<string name="filename" value="large.jpg"/>)", "unpacks to 20000x20000 pixels");
+}
+
+TEST(Bitmap, JpegInCmykIsAnError) {
+  std::string bytes = halvesJpeg();
+  const size_t frame = bytes.find(std::string("\xff\xc0\0\x11", 4));
+  ASSERT_NE(frame, std::string::npos);
+  bytes[frame + 3] = 8 + 4 * 3;
+  bytes[frame + 9] = 4;
+  bytes.insert(frame + 19, "\4\x11\1");
+  const Folder folder;
+  folder.write("cmyk.jpg", bytes);
+  expectTextureError(folder, R"(<string name="filename" value="cmyk.jpg"/>)", "JPEG in CMYK; expected grey or RGB");
 }
 
 TEST(ScaleTexture, MultipliesTheOneWithin) {
@@ -350,6 +424,13 @@ TEST(ScaleTexture, ScalesWhatIsNamedValue) {
   EXPECT_EQ(std::get<CheckerboardTexture>(board.kind).color0, (Rgb{0.2, 0.2, 0.2}));
   const Texture color = textureOf(R"(<rgb name="value" value="0.5, 0.25, 1"/>)");
   EXPECT_EQ(std::get<BitmapTexture>(color.kind).bitmap->pixels, (std::vector<float>{0.25f, 0.125f, 0.5f}));
+}
+
+TEST(ScaleTexture, ProductThatNoFloatHoldsIsAnError) {
+  const std::string value = R"(<float name="scale" value="3e38"/><rgb name="value" value="9"/>)";
+  expectErrorOnLine2(R"(<shape type="sphere"><emitter type="area"><texture name="radiance" type="scale">)" + value +
+                         "</texture></emitter></shape>",
+                     "emission texture has a value of inf");
 }
 
 TEST(ScaleTexture, NeedsOneThingToScale) {

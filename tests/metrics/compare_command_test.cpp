@@ -336,6 +336,13 @@ TEST_F(CompareCommand, LightBeyondPu21IsNoted) {
   EXPECT_EQ(notes("bright.exr", "pu21psnr", "-1"), "");
   EXPECT_EQ(notes("bright.exr", "rmse", "0"), "");
   EXPECT_EQ(notes("dim.exr", "pu21psnr", "0"), "");
+  light.pixels[4] = std::numeric_limits<float>::infinity();
+  writeExr(files_.path("infinite.exr"), light);
+  EXPECT_EQ(notes("infinite.exr", "pu21psnr", "0"), "") << "excluded";
+  writePng(files_.path("white.png"), Image8{.width = 4, .height = 4, .pixels = std::vector<uint8_t>(48, 255)});
+  EXPECT_EQ(notes("white.png", "pu21psnr", "0"), "");
+  EXPECT_NE(notes("white.png", "pu21psnr", "7").find("16 of 16 pixels of " + files_.path("white.png")),
+            std::string::npos);
 }
 
 TEST_F(CompareCommand, OnePixelImagesAreComparedByTheMetricsThatCan) {

@@ -1,6 +1,11 @@
 #include "metrics/image/image_io.h"
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <gtest/gtest.h>
+#include <half.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -145,6 +150,23 @@ TEST_F(ImageFiles, RadianceRunLengthAndPlainPixelsAreRead) {
   EXPECT_EQ(readImage(path("b.hdr")).image.pixels, (std::vector<float>{1, .5, 0, 1, .5, 0, 1, .5, 0}));
 }
 
+TEST_F(ImageFiles, OldRadianceRunsAreDigitsOfBase256) {
+  const auto write = [&](const std::string& runs) {
+    writeText("a.hdr", "#?RGBE\n\n-Y 1 +X 257\n" + std::string("\x80\x40\0\x81", 4) + runs);
+  };
+  write(std::string("\1\1\1\0\1\1\1\1", 8));  // 0 + 1 * 256
+  const std::vector<float> pixels = readImage(path("a.hdr")).image.pixels;
+  ASSERT_EQ(pixels.size(), size_t{3} * 257);
+  for (size_t x = 0; x < 257; ++x) {
+    EXPECT_EQ(pixels[3 * x], 1) << x;
+    EXPECT_EQ(pixels[3 * x + 1], 0.5f) << x;
+    EXPECT_EQ(pixels[3 * x + 2], 0) << x;
+  }
+  const std::string zeros("\1\1\1\0\1\1\1\0\1\1\1\0\1\1\1\0", 16);
+  write(zeros + std::string("\1\1\1\1", 4));
+  EXPECT_NE(complaint("a.hdr").find("a run passes the end"), std::string::npos) << "a count has four digits at most";
+}
+
 TEST_F(ImageFiles, RadianceColourCorrectionIsDividedOutAndOtherPrimariesAreRefused) {
   const auto write = [&](const std::string& lines) {
     writeText("a.hdr", "#?RGBE\n" + lines + "\n-Y 1 +X 1\n" + std::string("\x80\x40\x20\x82", 4));
@@ -253,6 +275,30 @@ TEST_F(ImageFiles, WhatSmallFilesUnpackToIsBounded) {
     EXPECT_THROW(checkDecodedSize("a.png", 1, 1, 1000), ImageError) << wrong;
   }
   unsetenv(kImageLimitVariable);
+}
+
+// A black file of half floats under DWAB, which takes about 1/8000 of its samples.
+TEST_F(ImageFiles, AnExrOfTheDensestCompressionIsRead) {
+  constexpr int kSide = 2048;
+  constexpr size_t kSamples = size_t{kSide} * kSide;
+  {
+    std::vector<Imath::half> samples(kSamples, Imath::half(0.0f));
+    Imf::Header header(kSide, kSide);
+    header.compression() = Imf::DWAB_COMPRESSION;
+    Imf::FrameBuffer frame;
+    for (const char* name : {"R", "G", "B"}) {
+      header.channels().insert(name, Imf::Channel(Imf::HALF));
+      frame.insert(name, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(samples.data()), sizeof(Imath::half),
+                                    sizeof(Imath::half) * kSide));
+    }
+    Imf::OutputFile file(path("a.exr").c_str(), header);
+    file.setFrameBuffer(frame);
+    file.writePixels(kSide);
+  }
+  ASSERT_LT(std::filesystem::file_size(path("a.exr")), 3 * sizeof(Imath::half) * kSamples / 4096);
+  const std::vector<float> pixels = readImage(path("a.exr")).image.pixels;
+  EXPECT_EQ(pixels.size(), 3 * kSamples);
+  EXPECT_TRUE(std::all_of(pixels.begin(), pixels.end(), [](float value) { return value == 0; }));
 }
 
 TEST_F(ImageFiles, ExrAttributesLargerThanTheFileAreRefused) {
