@@ -315,7 +315,6 @@ void readTwoSided(LoadContext& context, Parameters& parameters, Material& materi
     throw LoadError(parameters.location(), parameters.describe() + " contains " + std::to_string(sides.size()) +
                                                " objects <bsdf>; expected exactly 1");
   }
-  if (material.twoSided) failTwice(parameters);
   readBsdf(context, *sides.front(), material);
   // Mitsuba refuses these too.
   if (transmits(material, context.scene)) {
@@ -331,7 +330,8 @@ void readNull(LoadContext&, Parameters&, Material& material) {
 }
 
 void readMask(LoadContext& context, Parameters& parameters, Material& material) {
-  const TexturedFloat opacity = readTexturedFloat(context, parameters, "opacity", 0.5);
+  TexturedFloat opacity = readTexturedFloat(context, parameters, "opacity", 0.5);
+  opacity.value = std::clamp(opacity.value, 0.0, 1.0);  // as Mitsuba does with each of nested masks
   if (parameters.object().legacy && isColored(context, parameters, "opacity")) {
     context.note(parameters.locationOf("opacity"), "coloured opacity of a mask",
                  "one number for all channels, where Mitsuba 0.6 has one for each");

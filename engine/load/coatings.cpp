@@ -33,24 +33,17 @@ void readAnyCoating(LoadContext& context, Parameters& parameters, Material& mate
                    "absorption of a " + std::string(rough ? "roughcoating" : "coating"), "left out");
     }
   }
-  Material base;
-  readBsdf(context, parameters.onlyObject("bsdf"), base);
-  const auto* diffuse = std::get_if<Diffuse>(&base.kind);
-  if (diffuse == nullptr || base.opacity) {
+  readBsdf(context, parameters.onlyObject("bsdf"), material);  // which may also be two-sided or have a map
+  const auto* diffuse = std::get_if<Diffuse>(&material.kind);
+  if (diffuse == nullptr || material.opacity) {
     context.unsupported(parameters.location(),
                         parameters.describe() + " around another BSDF than diffuse is not supported; expected diffuse");
-    material = std::move(base);  // without its coat
-    return;
+    return;  // without its coat
   }
   plastic.diffuseReflectance = diffuse->reflectance;
   context.note(parameters.location(), parameters.describe() + " around diffuse",
                std::string(rough ? "roughplastic" : "plastic") +
                    ", which also has what the coat reflects back onto the base more than once");
-  const std::string id = material.id;
-  const SourceLocation source = material.source;
-  material = std::move(base);  // two-sidedness and maps
-  material.id = id;
-  material.source = source;
   material.kind = plastic;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/load/cie_tables.h"
 #include "engine/load/input_file.h"
@@ -165,6 +166,7 @@ Rgb readBlackbody(const XmlElement& element, ColorRole role) {
 
 // <spectrum type="uniform|d65|srgb|regular|irregular|blackbody">
 Rgb readSpectrumObject(LoadContext& context, const XmlElement& object, ColorRole role) {
+  const ReadingGuard guard(context, object);
   Parameters parameters(context, object);
   const std::string_view type = object.get("type");
   const auto numbers = [&](const char* name) {
@@ -210,6 +212,29 @@ Rgb readSpectrumObject(LoadContext& context, const XmlElement& object, ColorRole
   return color;
 }
 
+// The colour of a value element or an object, whatever its range.
+Rgb readAnyColor(LoadContext& context, const XmlElement& element, ColorRole role) {
+  if (element.isObject() && element.tag == "spectrum") return readSpectrumObject(context, element, role);
+  const SourceLocation where = element.location();
+  if (element.tag == "blackbody") return readBlackbody(element, role);
+  if (element.tag == "spectrum" && element.find("filename") != nullptr) {
+    checkAttributes(element, {"name", "filename"});
+    return readSpectrumFile(context, element, role);
+  }
+  const std::string* value = element.find("value");
+  if (element.tag != "rgb" && element.tag != "srgb" && element.tag != "spectrum" && element.tag != "float" &&
+      element.tag != "integer") {
+    throw LoadError(where, "<" + element.tag + "> given for a colour; expected <rgb>, <srgb>, <spectrum> or <float>");
+  }
+  checkAttributes(element, {"name", "value"});
+  if (!value) throw LoadError(where, "<" + element.tag + "> has no value; expected the attribute value");
+  // Convert the value by its tag.
+  if (element.tag == "rgb") return readRgb(*value, where, element.legacy);
+  if (element.tag == "srgb") return readSrgb(*value, where);
+  if (element.tag == "spectrum") return readSpectrum(*value, element, role);
+  return grey(parseReal(*value, where));
+}
+
 }  // namespace
 
 // The sRGB transfer function (IEC 61966-2-1).
@@ -244,40 +269,22 @@ Rgb spectrumToRgb(std::span<const double> wavelengths, std::span<const double> v
 }
 
 Rgb readColor(LoadContext& context, const XmlElement& element, ColorRole role) {
-  if (element.isObject() && element.tag == "spectrum") return readSpectrumObject(context, element, role);
+  Rgb color = readAnyColor(context, element, role);
+  // Check the range that the role allows. As in Mitsuba, an object may reflect more light than arrives.
   const SourceLocation where = element.location();
-  if (element.tag == "blackbody") return readBlackbody(element, role);
-  if (element.tag == "spectrum" && element.find("filename") != nullptr) {
-    checkAttributes(element, {"name", "filename"});
-    return readSpectrumFile(context, element, role);
-  }
-  const std::string* value = element.find("value");
-  Rgb color{};
-  if (element.tag != "rgb" && element.tag != "srgb" && element.tag != "spectrum" && element.tag != "float" &&
-      element.tag != "integer") {
-    throw LoadError(where, "<" + element.tag + "> given for a colour; expected <rgb>, <srgb>, <spectrum> or <float>");
-  }
-  checkAttributes(element, {"name", "value"});
-  if (!value) throw LoadError(where, "<" + element.tag + "> has no value; expected the attribute value");
-  // Convert the value by its tag.
-  if (element.tag == "rgb")
-    color = readRgb(*value, where, element.legacy);
-  else if (element.tag == "srgb")
-    color = readSrgb(*value, where);
-  else if (element.tag == "spectrum")
-    color = readSpectrum(*value, element, role);
-  else
-    color = grey(parseReal(*value, where));
-  // Check the range that the role allows.
+  const bool atMost1 = role == ColorRole::reflectance && !element.isObject();
+  const double most = atMost1 ? 1.0 : double{std::numeric_limits<float>::max()};
   constexpr double kSlightlyBelow = -0.1;
   for (double& channel : color) {
     if (role == ColorRole::refraction && channel < 0 && channel >= kSlightlyBelow) {
       context.note(where, "index of refraction below 0", "0 is used");
       channel = 0;
     }
-    if (!(channel >= 0) || (role == ColorRole::reflectance && channel > 1)) {
-      throw LoadError(where, "colour " + inQuotes(*value) + " is out of range; expected " +
-                                 (role == ColorRole::reflectance ? "values from 0 to 1" : "values from 0"));
+    // NaN fails both comparisons.
+    if (!(channel >= 0 && channel <= most)) {
+      const std::string* value = element.find("value");
+      throw LoadError(where, "colour " + (value ? inQuotes(*value) : "of a <" + element.tag + ">") +
+                                 " is out of range; expected values from 0 to " + (atMost1 ? "1" : "3.4e38"));
     }
   }
   return color;

@@ -20,7 +20,8 @@ enum class ColorRole {
   emission,
 };
 
-// The colour of a value element or a <spectrum type=…> object; anything else is an error.
+// The colour of a value element or a <spectrum type=…> object; anything else is an error, and so are channels below 0
+// or beyond the range of a float. A reflectance above 1 is an error but for objects.
 Rgb readColor(LoadContext& context, const XmlElement& element, ColorRole role);
 
 // A piecewise linear spectrum, zero outside its wavelengths (nm, increasing), as RGB. legacy: of a file of 0.4 to 0.6.

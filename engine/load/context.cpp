@@ -1,7 +1,5 @@
 #include "engine/load/context.h"
 
-#include <algorithm>
-
 #include "engine/load/values.h"
 
 namespace wavecrest {
@@ -50,17 +48,17 @@ void LoadContext::unsupported(const SourceLocation& where, const std::string& me
 
 void LoadContext::warn(const SourceLocation& where, const std::string& message) {
   // Some objects are read twice: meshes ahead of their shapes, materials again for each shape with an attribute.
-  const std::string warning = toString(where) + ": " + message;
-  if (std::ranges::find(scene.warnings, warning) == scene.warnings.end()) scene.warnings.push_back(warning);
+  const auto [warning, isNew] = warned.insert(toString(where) + ": " + message);
+  if (isNew) scene.warnings.push_back(*warning);
 }
 
 void LoadContext::note(const SourceLocation& where, const std::string& what, const std::string& effect) {
-  for (Note& note : scene.notes) {
-    if (note.what != what || note.effect != effect) continue;
-    ++note.count;
-    return;
+  const auto [known, isNew] = noted.try_emplace(std::pair(what, effect), scene.notes.size());
+  if (isNew) {
+    scene.notes.push_back({.source = where, .what = what, .effect = effect});
+  } else {
+    ++scene.notes[known->second].count;
   }
-  scene.notes.push_back({.source = where, .what = what, .effect = effect});
 }
 
 ReadingGuard::ReadingGuard(LoadContext& context, const XmlElement& object) : context_(context), object_(object) {

@@ -34,6 +34,9 @@ struct LoadContext {
   std::map<const XmlElement*, uint32_t> groups{};   // of the scene, by their definitions
   uint32_t shapeGroup = kNone;                      // the one whose shapes are being read
   uint32_t defaultMaterial[2] = {kNone, kNone};     // of surfaces, of lights
+  std::set<std::string> warned{};                   // Scene::warnings of the readers
+  // Indices in Scene::notes, by what and effect.
+  std::map<std::pair<std::string, std::string>, size_t> noted{};
 
   // Follows <ref>; any other element is itself.
   const XmlElement& resolve(const XmlElement& element) const;

@@ -125,7 +125,8 @@ EmitterKind readSpot(LoadContext& context, Parameters& parameters) {
     throw LoadError(parameters.locationOf("cutoff_angle"), "cutoff_angle is above 90 degrees; expected 0 to 90");
   }
   if (spot.beamWidth < 0 || spot.beamWidth > spot.cutoffAngle) {
-    throw LoadError(parameters.locationOf("beam_width"), "beam_width is not below the cutoff_angle; expected 0 to " +
+    throw LoadError(parameters.locationOf("beam_width"), "beam_width is " + std::to_string(spot.beamWidth) +
+                                                             "; expected 0 to the cutoff_angle, " +
                                                              std::to_string(spot.cutoffAngle) + " degrees");
   }
   // The light projects the texture as a picture: to_world may scale it, but not shear it.

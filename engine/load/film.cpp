@@ -22,17 +22,16 @@ void setGaussian(FilmSettings& film, double stddev) {
 
 // Reads the crop window in pixels. It stays 0 x 0, which stands for the whole film, if the file gives none.
 void readCrop(Parameters& parameters, FilmSettings& film) {
-  const auto pixels = [&](std::string_view name, int64_t fallback) {
-    return static_cast<uint32_t>(parameters.integer(name, fallback, 0, kLargestSide));
+  const auto pixels = [&](std::string_view name, int64_t fallback, int64_t least) {
+    return static_cast<uint32_t>(parameters.integer(name, fallback, least, kLargestSide));
   };
-  film.cropX = pixels("crop_offset_x", 0);
-  film.cropY = pixels("crop_offset_y", 0);
+  film.cropX = pixels("crop_offset_x", 0, 0);
+  film.cropY = pixels("crop_offset_y", 0, 0);
   const bool any = parameters.has("crop_width") || parameters.has("crop_height") || film.cropX > 0 || film.cropY > 0;
   if (!any) return;
-  film.cropWidth = pixels("crop_width", film.width);
-  film.cropHeight = pixels("crop_height", film.height);
-  if (film.cropWidth == 0 || film.cropHeight == 0 || film.cropX + film.cropWidth > film.width ||
-      film.cropY + film.cropHeight > film.height) {
+  film.cropWidth = pixels("crop_width", film.width, 1);
+  film.cropHeight = pixels("crop_height", film.height, 1);
+  if (film.cropX + film.cropWidth > film.width || film.cropY + film.cropHeight > film.height) {
     throw LoadError(parameters.location(), "crop window leaves the film; expected it to be inside " +
                                                std::to_string(film.width) + " x " + std::to_string(film.height));
   }

@@ -7,25 +7,33 @@ namespace wavecrest {
 
 namespace {
 
-// Integrators of Mitsuba 0.5 to 3 and the method here that estimates the same light by the same kind of paths.
-struct IntegratorMethod {
+// Integrators of Mitsuba 0.5 to 3, the method here that estimates the same light by the same kind of paths, and what
+// max_depth is where a file does not say.
+struct KnownIntegrator {
   std::string_view type, method;
+  int64_t maxDepth = -1;
 };
-constexpr IntegratorMethod kMethodOf[] = {
-    {"path", "pt"},          {"direct", "pt"},    {"volpath", "pt"},    {"volpathmis", "pt"}, {"volpath_simple", "pt"},
-    {"prb", "pt"},           {"prb_basic", "pt"}, {"prbvolpath", "pt"}, {"vpl", "pt"},        {"ptracer", "lt"},
-    {"adjoint", "lt"},       {"bdpt", "bpt"},     {"pssmlt", "mlt"},    {"mlt", "mlt"},       {"erpt", "mlt"},
-    {"photonmapper", "bpm"}, {"ppm", "ppm"},      {"sppm", "ppm"},      {"vcm", "vcm"},       {"upm", "vcm"}};
+// `direct` is what a path tracer does with two edges.
+constexpr KnownIntegrator kIntegrators[] = {
+    {"path", "pt"},          {"direct", "pt", 2},    {"direct_projective", "pt", 2},
+    {"volpath", "pt"},       {"volpathmis", "pt"},   {"volpath_simple", "pt"},
+    {"prb", "pt", 6},        {"prb_basic", "pt", 6}, {"prb_projective", "pt", 6},
+    {"prbvolpath", "pt", 6}, {"vpl", "pt", 5},       {"ptracer", "lt"},
+    {"adjoint", "lt"},       {"bdpt", "bpt"},        {"pssmlt", "mlt"},
+    {"mlt", "mlt"},          {"erpt", "mlt"},        {"photonmapper", "bpm"},
+    {"ppm", "ppm"},          {"sppm", "ppm"},        {"vcm", "vcm"},
+    {"upm", "vcm"}};
 
-std::string_view methodOf(std::string_view type) {
-  for (const IntegratorMethod& known : kMethodOf) {
-    if (known.type == type) return known.method;
+// Any other type has no method and no limit.
+KnownIntegrator integratorOf(std::string_view type) {
+  for (const KnownIntegrator& known : kIntegrators) {
+    if (known.type == type) return known;
   }
   return {};
 }
 
 void noteMethod(LoadContext& context, const Parameters& parameters, const std::string& leftOver) {
-  const std::string_view type = parameters.object().get("type"), method = methodOf(type);
+  const std::string_view method = integratorOf(parameters.object().get("type")).method;
   const std::string what = parameters.describe() + (leftOver.empty() ? "" : " with " + leftOver);
   if (method.empty()) {
     context.note(parameters.location(), what, "no method here is like it; the command line chooses what is rendered");
@@ -51,8 +59,7 @@ void readIntegrator(LoadContext& context, const XmlElement& element) {
   }
   RenderDefaults& defaults = context.scene.defaults;
   constexpr int64_t kMost = 1'000'000'000;
-  // `direct` is what a path tracer does with two edges.
-  const int64_t fallback = element.get("type") == "direct" ? 2 : -1;
+  const int64_t fallback = integratorOf(element.get("type")).maxDepth;
   defaults.maxDepth = static_cast<int>(parameters.integer("max_depth", fallback, -1, kMost));
   if (defaults.maxDepth == 0) {
     throw LoadError(parameters.locationOf("max_depth"),

@@ -54,7 +54,8 @@ struct AskedParameter {
 };
 
 struct LoadOptions {
-  // Values of $name, stronger than the file's <default>. A name that the scene never uses is an error.
+  // Values of $name, stronger than the file's <default>. A name that the scene never uses is an error, unless
+  // unusedDefine is there for it.
   std::map<std::string, std::string> defines{};
   // Skip what is not supported and list it in Scene::warnings. Malformed input is an error all the same.
   bool lenient = false;
@@ -65,6 +66,8 @@ struct LoadOptions {
   bool keepAll = false;
   // Called for each parameter that is asked for: what the loader knows, for the reference of the scene language.
   std::function<void(const AskedParameter&)> asked{};
+  // Called for each name of `defines` that the scene never uses.
+  std::function<void(const std::string&)> unusedDefine{};
 };
 
 // "-" is standard input; files are then found relative to the current folder.

@@ -1,8 +1,10 @@
 #include "engine/load/materials.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/load/color.h"
+#include "engine/load/mesh_attributes.h"
 #include "engine/load/plugins.h"
 #include "engine/load/values.h"
 #include "engine/scene/vector_math.h"
@@ -21,8 +23,12 @@ std::pair<double, double> rangeOf(const Texture& texture) {
     const auto [least1, most1] = std::ranges::minmax(board->color1);
     return {std::min(least0, least1), std::max(most0, most1)};
   }
-  const Bitmap& bitmap = *std::get<BitmapTexture>(texture.kind).bitmap;
-  const std::vector<float>& pixels = bitmap.pixels;
+  const auto& image = std::get<BitmapTexture>(texture.kind);
+  const Bitmap& bitmap = *image.bitmap;
+  // Of a mesh attribute only the corners of triangles: the other texels lie outside and are extrapolated.
+  std::vector<float> corners;
+  if (image.ofMesh) corners = unbakedAttribute(bitmap, size_t{bitmap.width} * bitmap.height / 4).values;
+  const std::vector<float>& pixels = image.ofMesh ? corners : bitmap.pixels;
   if (pixels.empty()) return {0, 0};
   const auto [least, most] = std::ranges::minmax(pixels);
   if (least >= 0 || bitmap.channels != 3 || pixels.size() == 3) return {least, most};
@@ -32,14 +38,16 @@ std::pair<double, double> rangeOf(const Texture& texture) {
   return {0, most};
 }
 
-// Textures that reflect more than arrives are taken as they are, as in Mitsuba; less than nothing is refused.
+// Textures that reflect more than arrives are taken as they are, as in Mitsuba. Less than nothing is refused, and so is
+// what a float cannot hold.
 void checkRange(LoadContext& context, const Texture& texture, ColorRole role, const SourceLocation& where) {
   const bool reflects = role == ColorRole::reflectance;
   if (!reflects && role != ColorRole::emission) return;
   const auto [least, most] = rangeOf(texture);
-  if (least < 0) {
+  if (least < 0 || most > double{std::numeric_limits<float>::max()}) {
     throw LoadError(where, std::string(reflects ? "reflectance" : "emission") + " texture has a value of " +
-                               std::to_string(least) + "; expected " + (reflects ? "0 to 1" : "0 or more"));
+                               std::to_string(least < 0 ? least : most) + "; expected " +
+                               (reflects ? "0 to 1" : "0 to 3.4e38"));
   }
   if (reflects && most > 1) {
     context.warn(where, "reflectance texture has values up to " + std::to_string(most) +
@@ -67,8 +75,7 @@ TexturedRgb readTextured(LoadContext& context, Parameters& parameters, std::stri
     return {.value = constantOf(texture)};
   }
   const uint32_t texture = textureOf(context, *element);
-  // Texels of a baked attribute also lie outside of the triangles, where values are extrapolated.
-  if (!context.attributeBitmap) checkRange(context, context.scene.textures[texture], role, where);
+  checkRange(context, context.scene.textures[texture], role, where);
   return {.value = {0, 0, 0}, .texture = texture};
 }
 

@@ -287,6 +287,10 @@ void readFaces(Source& source, const PlyElement& element, uint64_t vertexCount, 
     throw LoadError({where.file, element.line},
                     "PLY faces have no vertices; expected one list property vertex_indices or vertex_index");
   }
+  if (vertexCount == 0 && element.count > 0) {
+    throw LoadError({where.file, element.line},
+                    "PLY file has no vertices before its faces; expected the vertices first");
+  }
   soup.triangles.reserve(element.count);
   startAttribute(element, true, soup.attribute);
   const bool hasAttribute = soup.attribute.channels != 0 && soup.attribute.perFace();
@@ -326,28 +330,20 @@ void skipElement(Source& source, const PlyElement& element) {
   }
 }
 
-// Reads the elements in the order of the header. Faces must come after the vertices that they refer to.
+// Reads the elements in the order of the header, which has one "vertex" and one "face".
 template <class Source>
 TriangleSoup readBody(Source source, const PlyHeader& header, const std::string& file, const std::string& attribute) {
   TriangleSoup soup;
   soup.attribute.name = attribute;
   const SourceLocation where{file, header.bodyLine};
-  uint64_t vertexCount = 0;
-  int vertexElements = 0, faceElements = 0;
   for (const PlyElement& element : header.elements) {
-    // A second element of the same name is left unread, since it is an error in any case.
     if (element.name == "vertex") {
-      vertexCount = element.count;
-      if (++vertexElements == 1) readVertices(source, element, where, soup);
+      readVertices(source, element, where, soup);
     } else if (element.name == "face") {
-      if (++faceElements == 1) readFaces(source, element, vertexCount, where, soup);
+      readFaces(source, element, soup.positions.size(), where, soup);
     } else {
       skipElement(source, element);
     }
-  }
-  if (vertexElements != 1 || faceElements != 1) {
-    throw LoadError({file, 1}, "PLY file has " + std::to_string(vertexElements) + " elements \"vertex\" and " +
-                                   std::to_string(faceElements) + " \"face\"; expected one of each");
   }
   if (!source.atEnd()) source.fail("PLY file goes on after its last element; expected the end of the file");
   return soup;

@@ -1,5 +1,6 @@
 #include "engine/load/ply_header.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -74,6 +75,17 @@ uint64_t smallestRow(const PlyElement& element, PlyFormat format) {
     bytes += format == PlyFormat::ascii ? 2 : byteSize(property.isList ? property.countType : property.type);
   }
   return bytes;
+}
+
+// Throws unless the file has one element of vertices and one of faces.
+void checkElements(const PlyHeader& header, std::string_view file) {
+  const auto countOf = [&](std::string_view name) {
+    return std::ranges::count(header.elements, name, &PlyElement::name);
+  };
+  const auto vertices = countOf("vertex"), faces = countOf("face");
+  if (vertices == 1 && faces == 1) return;
+  throw LoadError({std::string(file), 1}, "PLY file has " + std::to_string(vertices) + " elements \"vertex\" and " +
+                                              std::to_string(faces) + " \"face\"; expected one of each");
 }
 
 // Throws if the file is too short for the announced rows, before a reader reserves memory for them.
@@ -151,7 +163,8 @@ PlyHeader readPlyHeader(std::string_view text, std::string_view file) {
   }
   // Check the header as a whole.
   if (!hasFormat) throw LoadError(where, "PLY header has no format; expected a line \"format … 1.0\"");
-  checkCounts(header, text.size(), file);
+  checkElements(header, file);
+  checkCounts(header, text.size() - 1, file);  // without the added newline
   return header;
 }
 

@@ -37,7 +37,8 @@ struct PlyHeader {
   int bodyLine = 0;
 };
 
-// `text` ends with a newline. Checks that the file is long enough for the counts that the header announces.
+// `text` is the content of the file and a newline behind it. Checks that the file has one element of vertices and one
+// of faces, and is long enough for the counts that the header announces.
 PlyHeader readPlyHeader(std::string_view text, std::string_view file);
 
 }  // namespace wavecrest

@@ -44,12 +44,17 @@ struct View {
   Point operator()(const Float3& corner) const { return {corner[x], corner[y]}; }
 };
 
-// But for what rounding makes of collinear corners.
+// But for what rounding makes of collinear corners. A corner that is repeated makes no turn: the edges on either side
+// of it do.
 bool isConvex(std::span<const Float3> corners, const View& view) {
   constexpr double kRounding = 1e-6;  // the sine of a turn
-  Point a = view(corners[corners.size() - 2]), b = view(corners.back());
+  // The last edge that has a length.
+  const Point last = view(corners.back());
+  Point a = last, b = last;
+  for (size_t i = corners.size() - 1; i > 0 && a == b; --i) a = view(corners[i - 1]);
   for (const Float3& corner : corners) {
     const Point c = view(corner);
+    if (c == b) continue;
     const double turn = area2(a, b, c);
     if (turn < 0 && turn * turn > kRounding * kRounding * squaredDistance(a, b) * squaredDistance(b, c)) return false;
     a = b;

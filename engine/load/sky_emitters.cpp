@@ -109,7 +109,10 @@ EmitterKind readSunsky(LoadContext& context, Parameters& parameters) {
     sky.sunAperture = kSmallestAperture;
   }
   if (parameters.boolean("complex_sun", false)) {
-    context.note(parameters.locationOf("complex_sun"), "complex_sun", "the sun's disc is evenly bright");
+    context.note(
+        parameters.locationOf("complex_sun"), "complex_sun",
+        "the sun's disc is evenly bright, with the irradiance of Mitsuba's plain sun: a sun below 5 degrees is "
+        "too bright");
   }
   // Versions 0.5 and 0.6 give the radius of the sun as a factor, and their zenith is along y.
   if (legacy) {

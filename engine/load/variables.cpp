@@ -76,12 +76,12 @@ std::string Variables::substitute(std::string_view text, const SourceLocation& w
   return result;
 }
 
-std::string Variables::unusedDefines() const {
-  std::string list;
+std::vector<std::string> Variables::unusedDefines() const {
+  std::vector<std::string> names;
   for (const auto& [name, variable] : variables_) {
-    if (variable.fromOutside && !variable.used) list += (list.empty() ? "-D " : ", -D ") + name;
+    if (variable.fromOutside && !variable.used) names.push_back(name);
   }
-  return list;
+  return names;
 }
 
 }  // namespace wavecrest

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/load/load.h"
 
@@ -18,8 +19,8 @@ class Variables {
 
   void setDefault(std::string_view name, std::string_view value, const SourceLocation& where);
   std::string substitute(std::string_view text, const SourceLocation& where);
-  // Outside definitions that nothing used, as "-D name".
-  std::string unusedDefines() const;
+  // Names of outside definitions that nothing used.
+  std::vector<std::string> unusedDefines() const;
 
  private:
   struct Variable {

@@ -300,9 +300,14 @@ std::unique_ptr<XmlDocument> readXmlDocument(const std::filesystem::path& path, 
   if (document->scene.tag != "scene") {
     throw LoadError(document->scene.location(), "root element is <" + document->scene.tag + ">; expected <scene>");
   }
-  // A definition that the scene does not use is probably misspelt.
-  if (const std::string unused = reader.variables().unusedDefines(); !unused.empty()) {
-    const std::string message = "the scene does not use " + unused + "; expected names of its variables";
+  // A definition that the scene does not use is probably misspelt. The caller may know better, and takes its name then.
+  const std::vector<std::string> unused = reader.variables().unusedDefines();
+  if (options.unusedDefine) {
+    for (const std::string& name : unused) options.unusedDefine(name);
+  } else if (!unused.empty()) {
+    std::string list;
+    for (const std::string& name : unused) list += (list.empty() ? "-D " : ", -D ") + name;
+    const std::string message = "the scene does not use " + list + "; expected names of its variables";
     if (!options.lenient) throw LoadError({path.string(), 0}, message);
     document->warnings.push_back(message);
   }

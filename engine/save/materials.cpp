@@ -8,8 +8,7 @@ namespace {
 
 constexpr Rgb kWhite{1, 1, 1};
 
-// Whether a constant is outside of [0, 1]. A file can give it only as a `rawconstant` texture, whose range is not
-// checked.
+// Whether a constant is outside of [0, 1]. It is written as a `rawconstant` texture, which takes values above 1.
 bool isRaw(const TexturedRgb& value) {
   const auto outside = [](double v) { return v < 0 || v > 1; };
   return value.texture == kNone && (outside(value.value[0]) || outside(value.value[1]) || outside(value.value[2]));

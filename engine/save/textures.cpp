@@ -144,10 +144,13 @@ void saveBitmap(SaveContext& context, const BitmapTexture& texture, bool isData,
   if (texture.wrap == Wrap::clamp) addString(node, "wrap_mode", "clamp");
 }
 
-// A colour of a checkerboard. Mitsuba takes no <rgb> above 1, so equal channels above 1 are a number.
+// A colour of a checkerboard. Mitsuba takes no <rgb> above 1: equal channels are a number then, others a spectrum.
 void addSquare(pugi::xml_node node, const char* name, const Rgb& color) {
-  if (color[0] > 1 && color[0] == color[1] && color[0] == color[2]) return addFloat(node, name, color[0]);
-  addRgb(node, name, color);
+  if (std::ranges::max(color) <= 1) return addRgb(node, name, color);
+  if (color[0] == color[1] && color[0] == color[2]) return addFloat(node, name, color[0]);
+  const pugi::xml_node spectrum = addObject(node, "spectrum", "srgb", {}, name);
+  addRgb(spectrum, "color", color);
+  addBoolean(spectrum, "unbounded", true);
 }
 
 // Writes one texture. isNumber: it is asked for as a number, and has no source. isData: it is not asked for as a

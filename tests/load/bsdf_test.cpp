@@ -291,12 +291,18 @@ TEST(Bsdf, TwoRoughnessesAreKeptWhereTheyDiffer) {
   EXPECT_EQ(kindOf<Dielectric>("<bsdf type=\"roughdielectric\">" + text + "</bsdf>").alphaV.value().value, 0.1);
 }
 
+// Each is at most 1 before it counts.
 TEST(Bsdf, MasksWithinEachOtherMultiply) {
-  EXPECT_EQ(materialOf(R"(<bsdf type="mask"><float name="opacity" value="0.5"/><bsdf type="mask">
-      <float name="opacity" value="0.25"/><bsdf type="diffuse"/></bsdf></bsdf>)")
-                .opacity.value()
-                .value,
-            0.125);
+  const auto opacityOf = [](const std::string& outer, const std::string& inner) {
+    return materialOf(R"(<bsdf type="mask"><float name="opacity" value=")" + outer +
+                      R"("/><bsdf type="mask"><float name="opacity" value=")" + inner +
+                      R"("/><bsdf type="diffuse"/></bsdf></bsdf>)")
+        .opacity.value()
+        .value;
+  };
+  EXPECT_EQ(opacityOf("0.5", "0.25"), 0.125);
+  EXPECT_EQ(opacityOf("2", "0.25"), 0.25);
+  EXPECT_EQ(opacityOf("0.25", "2"), 0.25);
 }
 
 TEST(Bsdf, PrincipledDefaultsAndIndex) {
@@ -383,7 +389,13 @@ TEST(Bsdf, CoatsOverDiffuseArePlastic) {
   EXPECT_EQ(std::get<Plastic>(material.kind).alpha.value, 0.2);
   EXPECT_TRUE(material.twoSided);
   EXPECT_EQ(scene.notes.size(), 1u);
-  expectBsdfError(R"(<bsdf type="coating"><bsdf type="conductor"/></bsdf>)", "another BSDF than diffuse");
+  const std::string other = R"(<bsdf type="coating" id="coat"><bsdf type="conductor"/></bsdf>)";
+  expectBsdfError(other, "another BSDF than diffuse");
+  // Without its coat, under the coating's name and place.
+  const Scene bare = loadBody("<shape type=\"sphere\">" + other + "</shape>", {.lenient = true});
+  EXPECT_TRUE(std::holds_alternative<Conductor>(bare.materials.at(0).kind));
+  EXPECT_EQ(bare.materials.at(0).id, "coat");
+  EXPECT_EQ(bare.materials.at(0).source.line, 1);
 }
 
 TEST(Bsdf, MistakesAreErrors) {

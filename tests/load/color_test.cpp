@@ -186,6 +186,33 @@ TEST(Color, BadOnesAreErrors) {
                    "3 wavelengths and 2 values");
 }
 
+TEST(Color, SpectrumThatContainsItselfIsAnError) {
+  for (const char* type : {"srgb", "d65"}) {
+    expectColorError("<spectrum type=\"" + std::string(type) +
+                         R"(" id="a" name="reflectance"><ref id="a" name="color"/></spectrum>)",
+                     "<spectrum> contains itself through a reference");
+  }
+}
+
+TEST(Color, ReflectanceOfAnObjectMayBeAbove1) {
+  expectRgb(
+      reflectanceOf(R"(<spectrum type="uniform" name="reflectance"><float name="value" value="1.5"/></spectrum>)"),
+      {1.5, 1.5, 1.5}, 0);
+}
+
+TEST(Color, AllFormsAreInTheRangeOfPositiveFloats) {
+  expectColorError(R"(<spectrum type="uniform" name="reflectance"><float name="value" value="-3"/></spectrum>)",
+                   "colour of a <spectrum> is out of range; expected values from 0 to 3.4e38");
+  for (const char* intensity :
+       {R"(<spectrum type="d65" name="intensity"><float name="scale" value="-1"/></spectrum>)",
+        R"(<spectrum type="blackbody" name="intensity"><float name="temperature" value="1e300"/></spectrum>)",
+        R"(<blackbody name="intensity" temperature="3000" scale="-1"/>)",
+        R"(<rgb name="intensity" value="0, 1e39, 0"/>)", R"(<float name="intensity" value="1e39"/>)"}) {
+    expectErrorOnLine2("<emitter type=\"point\">" + std::string(intensity) + "</emitter>", "out of range");
+  }
+  expectRgb(intensityOf(R"(<rgb name="intensity" value="3.4e38, 0, 0"/>)"), {3.4e38, 0, 0}, 0);
+}
+
 TEST(Color, NegativeRadianceIsAnError) {
   expectErrorOnLine2(R"(<emitter type="constant"><rgb name="radiance" value="1,-1,1"/></emitter>)", "out of range");
 }

@@ -147,7 +147,9 @@ TEST(SpotLight, ConeThatMitsubaDeformsIsNoted) {
 
 TEST(SpotLight, AnglesAreChecked) {
   expectEmitterError("spot", R"(<float name="cutoff_angle" value="91"/>)", "above 90 degrees");
-  expectEmitterError("spot", R"(<float name="beam_width" value="30"/>)", "not below the cutoff_angle");
+  expectEmitterError("spot", R"(<float name="beam_width" value="30"/>)",
+                     "beam_width is 30.000000; expected 0 to the cutoff_angle, 20.000000 degrees");
+  expectEmitterError("spot", R"(<float name="beam_width" value="-5"/>)", "beam_width is -5.000000; expected 0 to");
 }
 
 TEST(DirectionalLight, Defaults) {

@@ -67,14 +67,15 @@ TEST(MeshAttribute, MaterialOfTwoMeshesIsReadForEach) {
   EXPECT_NE(scene.shapes.at(0).material, scene.shapes.at(1).material);
 }
 
-// A triangle whose vertices have three more properties of a type; those of vertex 0 are 1, 2 and 3.
-std::string plyOf(const std::string& type, const std::array<const char*, 3>& names) {
+// A triangle whose vertices have three more properties of a type, with these values of vertex 0. The others have 0.75.
+std::string plyOf(const std::string& type, const std::array<const char*, 3>& names, const std::string& values) {
   std::string header =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
   for (const char* name : names) header += "property " + type + " " + name + "\n";
   return header +
          "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-         "0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n3 0 1 2\n";
+         "0 0 0 " +
+         values + "\n1 0 0 .75 .75 .75\n0 1 0 .75 .75 .75\n3 0 1 2\n";
 }
 
 TEST(MeshAttribute, ChannelsHaveMitsubasNames) {
@@ -89,11 +90,12 @@ TEST(MeshAttribute, ChannelsHaveMitsubasNames) {
                {{"red", "green", "blue"}, "vertex_color"}};
   for (const auto& [properties, attribute] : cases) {
     const Folder folder;
-    folder.write("mesh.ply", plyOf("float", properties));
+    folder.write("mesh.ply", plyOf("float", properties, ".25 .5 .75"));
     const Scene scene = loadBody(folder, plyWith(attribute));
     const Bitmap& bitmap = *std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap;
     ASSERT_EQ(bitmap.channels, 3u) << properties[0];
-    EXPECT_EQ(std::vector<float>(bitmap.pixels.begin(), bitmap.pixels.begin() + 3), (std::vector<float>{1, 2, 3}))
+    EXPECT_EQ(std::vector<float>(bitmap.pixels.begin(), bitmap.pixels.begin() + 3),
+              (std::vector<float>{0.25f, 0.5f, 0.75f}))
         << properties[0];
     EXPECT_TRUE(scene.warnings.empty());
   }
@@ -101,11 +103,29 @@ TEST(MeshAttribute, ChannelsHaveMitsubasNames) {
 
 TEST(MeshAttribute, WholeNumbersAreTakenAsTheyAreWithAWarning) {
   const Folder folder;
-  folder.write("mesh.ply", plyOf("uchar", {"red", "green", "blue"}));
+  folder.write("mesh.ply", plyOf("uchar", {"red", "green", "blue"}, "0 0 1"));
   const Scene scene = loadBody(folder, plyWith("vertex_color"));
-  EXPECT_EQ(std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap->pixels.at(2), 3.0f);
+  EXPECT_EQ(std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap->pixels.at(2), 1.0f);
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_NE(scene.warnings[0].find("whole numbers"), std::string::npos);
+}
+
+// As of other textures. Texels that are extrapolated (1.5 for a vertex 0 of 0, and -3.5 for one of 5) do not count.
+TEST(MeshAttribute, ReflectanceBelowZeroIsRefusedAndAboveOneIsSaid) {
+  const auto warningsOf = [](const std::string& values) {
+    const Folder folder;
+    folder.write("mesh.ply", plyOf("float", {"color_0", "color_1", "color_2"}, values));
+    return loadBody(folder, plyWith("vertex_color")).warnings;
+  };
+  EXPECT_TRUE(warningsOf("1 1 1").empty());
+  EXPECT_TRUE(warningsOf("0 0 0").empty());
+  const std::vector<std::string> warnings = warningsOf("0 5 0");
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("reflectance texture has values up to 5"), std::string::npos) << warnings[0];
+  const Folder folder;
+  folder.write("mesh.ply", plyOf("float", {"color_0", "color_1", "color_2"}, "-5 0 0"));
+  expectError(folder, sceneXml(plyWith("vertex_color") + std::string(kSensor)), 2,
+              "reflectance texture has a value of -5");
 }
 
 TEST(MeshAttribute, WhatCannotBeIsRefused) {

@@ -178,6 +178,35 @@ TEST(Ply, HeaderErrorsNameTheirLine) {
   expectPlyError(kQuadPly.substr(0, kQuadPly.find("end_header")), 11, "header does not end");
 }
 
+// Elements without properties have rows of no bytes, so a file can announce any number of them.
+TEST(Ply, ElementsThatAreMissingOrGivenTwiceAreErrors) {
+  const auto quadWith = [](const std::string& element) {
+    return std::string(kQuadPly).insert(kQuadPly.find("element face"), element);
+  };
+  expectPlyError(withLine(quadWith("element vertex 1000000\n"), kQuadPlyVertexLine + 5, "4 0 1 2 999999"), 1,
+                 "2 elements \"vertex\" and 1 \"face\"; expected one of each");
+  expectPlyError(quadWith("element face 0\n"), 1, "1 elements \"vertex\" and 2 \"face\"");
+  expectPlyError(withLine(kQuadPly, 8, "element edge 2"), 1, "1 elements \"vertex\" and 0 \"face\"");
+}
+
+TEST(Ply, FileThatIsTooShortIsNamedWithItsSize) {
+  const std::string text = withLine(kQuadPly, 4, "element vertex 4000000");
+  expectPlyError(text, 4, "file of " + std::to_string(text.size()) + " bytes is too short for 4000000 rows");
+}
+
+TEST(Ply, FacesBeforeTheirVerticesAreAnError) {
+  const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
+  const auto plyOf = [](const std::string& elements, const std::string& rows) {
+    return "ply\nformat ascii 1.0\n" + elements + "end_header\n" + rows;
+  };
+  const auto vertices = [](int count) {
+    return "element vertex " + std::to_string(count) + "\nproperty float x\nproperty float y\nproperty float z\n";
+  };
+  expectPlyError(plyOf(face + vertices(3), "3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n"), 3,
+                 "no vertices before its faces; expected the vertices first");
+  expectPlyError(plyOf(vertices(0) + face, "3 0 1 2\n"), 7, "no vertices before its faces");
+}
+
 TEST(Ply, BodyErrorsNameTheirLine) {
   expectPlyError(vertexLine(1, "1 zero 0"), 12, "bad number \"zero\"");
   expectPlyError(vertexLine(2, "0 nan 0"), 13, "not a finite float");

@@ -43,6 +43,15 @@ TEST(Polygon, ConvexOneIsAFanEvenIfItIsBent) {
 
 TEST(Polygon, ArrowheadIsCovered) { expectCovered({{-1, -1, 0}, {0, 0, 0}, {1, -1, 0}, {0, 1, 0}}, 1); }
 
+TEST(Polygon, ReflexCornerThatIsRepeatedIsCovered) {
+  expectCovered({{-1, -1, 0}, {0, 0, 0}, {0, 0, 0}, {1, -1, 0}, {0, 1, 0}}, 1);
+}
+
+TEST(Polygon, ConvexOneWithARepeatedCornerIsAFan) {
+  const std::vector<Float3> corners = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}};
+  EXPECT_EQ(cutPolygon(corners), (std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}));
+}
+
 TEST(Polygon, ArrowIsCovered) {
   expectCovered({{-.2f, -1, 0}, {.2f, -1, 0}, {.2f, .2f, 0}, {.8f, .2f, 0}, {0, 1, 0}, {-.8f, .2f, 0}, {-.2f, .2f, 0}},
                 0.4 * 1.2 + 0.8 * 0.8);

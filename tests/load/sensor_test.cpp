@@ -186,6 +186,10 @@ TEST(Film, MistakesAreErrors) {
   expectSensorError(
       R"(<film type="hdrfilm"><integer name="crop_width" value="700"/><integer name="crop_offset_x" value="100"/></film>)",
       "crop window leaves the film");
+  expectSensorError(R"(<film type="hdrfilm"><integer name="crop_width" value="0"/></film>)",
+                    "\"crop_width\" is 0; expected 1 to");
+  expectSensorError(R"(<film type="hdrfilm"><integer name="crop_height" value="0"/></film>)",
+                    "\"crop_height\" is 0; expected 1 to");
   expectSensorError(R"(<film type="hdrfilm"><rfilter type="sinc"/></film>)", "rfilter \"sinc\" is not supported");
   expectSensorError(R"(<film type="hdrfilm"><rfilter type="tent"><float name="radius" value="99"/></rfilter></film>)",
                     "wider than 32 pixels");
@@ -224,6 +228,18 @@ TEST(Integrator, WrappersGiveTheDepthsOfTheOneWithin) {
 }
 
 TEST(Integrator, DirectIsTwoEdges) { EXPECT_EQ(loadBody(R"(<integrator type="direct"/>)").defaults.maxDepth, 2); }
+
+TEST(Integrator, DepthDefaultsToThatOfItsType) {
+  const auto depthOf = [](const std::string& type) {
+    return loadBody("<integrator type=\"" + type + "\"/>").defaults.maxDepth;
+  };
+  for (const char* type : {"prb", "prb_basic", "prb_projective", "prbvolpath"}) EXPECT_EQ(depthOf(type), 6) << type;
+  EXPECT_EQ(depthOf("direct_projective"), 2);
+  EXPECT_EQ(depthOf("vpl"), 5);
+  EXPECT_EQ(depthOf("ptracer"), -1);
+  EXPECT_EQ(loadBody(R"(<integrator type="prb"><integer name="max_depth" value="9"/></integrator>)").defaults.maxDepth,
+            9);
+}
 
 TEST(Integrator, DepthBelowMinusOneIsAnError) {
   expectErrorOnLine2(R"(<integrator type="path"><integer name="max_depth" value="-2"/></integrator>)",

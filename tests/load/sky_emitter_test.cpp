@@ -126,6 +126,9 @@ TEST(Sunsky, NotesWhatItLeavesOut) {
                                     std::string(kSensor) + std::string(kSphere)));
   ASSERT_EQ(scene.notes.size(), 2u);
   EXPECT_EQ(scene.notes[0].what, "complex_sun");
+  EXPECT_EQ(scene.notes[0].effect,
+            "the sun's disc is evenly bright, with the irradiance of Mitsuba's plain sun: a sun below 5 degrees is too "
+            "bright");
   EXPECT_EQ(scene.notes[1].what, "sun below the horizon");
 }
 

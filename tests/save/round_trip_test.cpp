@@ -156,6 +156,12 @@ TEST(RoundTrip, NumbersOfACheckerboardMayBeAbove1) {
   EXPECT_EQ(std::get<CheckerboardTexture>(again.textures[texture].kind).color1[0], 1.4);
 }
 
+TEST(RoundTrip, RadianceOfACheckerboardMayBeAbove1) {
+  expectSame(R"(<shape type="rectangle"><emitter type="area"><texture type="scale" name="radiance">
+    <float name="scale" value="10"/><texture type="checkerboard"><rgb name="color0" value="1, 0.8, 0.6"/></texture>
+    </texture></emitter></shape>)");
+}
+
 // Read as numbers, the colours of a checkerboard change places: without the texture that this was done to, they must be
 // written the other way round.
 TEST(RoundTrip, ANumberWithoutItsColoursIsTheSameNumber) {
