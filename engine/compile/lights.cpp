@@ -19,9 +19,6 @@ namespace {
 // power.
 constexpr double kEvenShare = 0.5;
 
-// Kernels choose the entry of a table, and whether it is kept, by random numbers of 24 bits.
-constexpr size_t kNumbers = size_t{1} << 24;
-
 template <class S>
 Double3 widenedRecord(const S (&a)[3]) {
   return {a[0], a[1], a[2]};
@@ -80,7 +77,7 @@ LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radianc
 // often each is picked.
 template <class S>
 class LightCollector {
-  static constexpr size_t kMostLights = std::min<size_t>(kMostIndexed<LightRecord<S>>, kNumbers);
+  static constexpr size_t kMostLights = std::min<size_t>(kMostIndexed<LightRecord<S>>, kPickNumbers);
 
  public:
   LightCollector(const Scene& scene, const BoundingSphere& bounds, const Double3& origin)
@@ -354,61 +351,6 @@ std::vector<double> evenedShares(const std::vector<double>& weights, double even
   for (const double weight : weights) {
     const double own = total > 0 ? weight / total : 1 / count;
     shares.push_back(takesPart(weight) ? (1 - even) * own + even / count : 0);
-  }
-  return shares;
-}
-
-std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights) {
-  constexpr double kNumberGrid = static_cast<double>(kNumbers);  // on which the probability of `keep` is exact
-  const size_t count = weights.size();
-  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-  // Scale the weights to a mean of 1, and tell those below 1 from the others.
-  std::vector<double> scaled(count);
-  std::vector<uint32_t> small, large;
-  for (size_t i = 0; i < count; ++i) {
-    scaled[i] = weights[i] / sum * static_cast<double>(count);
-    (scaled[i] < 1 ? small : large).push_back(static_cast<uint32_t>(i));
-  }
-  std::vector<AliasEntry> table(count);
-  for (size_t i = 0; i < count; ++i) table[i] = {1.0f, static_cast<uint32_t>(i)};
-  // A large entry fills what a small one leaves of its slot, and keeps the rest.
-  while (!small.empty() && !large.empty()) {
-    const uint32_t less = small.back(), more = large.back();
-    small.pop_back();
-    const double keep = std::ceil(scaled[less] * kNumberGrid) / kNumberGrid;
-    table[less] = {static_cast<float>(keep), more};
-    scaled[more] -= 1 - keep;
-    if (scaled[more] < 1) {
-      large.pop_back();
-      small.push_back(more);
-    }
-  }
-  return table;  // what is left over differs from 1 by rounding only
-}
-
-std::vector<double> entryShares(size_t count) {
-  const auto entryOf = [count](size_t i) {
-    const float number = static_cast<float>(i) / static_cast<float>(kNumbers);
-    return std::min(static_cast<size_t>(number * static_cast<float>(count)), count - 1);
-  };
-  std::vector<double> shares;
-  size_t first = 0;  // number that chooses entry i
-  for (size_t i = 0; i < count; ++i) {
-    size_t end = (i + 1) * kNumbers / count;
-    while (end < kNumbers && entryOf(end) <= i) ++end;
-    while (end > first && entryOf(end - 1) > i) --end;
-    shares.push_back(static_cast<double>(end - first) / static_cast<double>(kNumbers));
-    first = end;
-  }
-  return shares;
-}
-
-std::vector<double> sharesOf(const std::vector<AliasEntry>& table, const std::vector<double>& chosen) {
-  std::vector<double> shares(table.size(), 0);
-  for (size_t i = 0; i < table.size(); ++i) {
-    const auto keep = static_cast<double>(table[i].keep);
-    shares[i] += keep * chosen[i];
-    shares[table[i].other] += (1 - keep) * chosen[i];
   }
   return shares;
 }

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/compile/material_kinds.h"
+#include "engine/compile/overloaded.h"
 #include "engine/compile/rough_boundary.h"
+#include "engine/compile/texture_bounds.h"
 #include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"
 #include "kernels/stages.h"
@@ -19,134 +22,23 @@ constexpr double kIndexMatched = 1e-4;
 // Mitsuba 0.6 scales the colours of a phong whose sum is above 1 in a channel down to this sum.
 constexpr double kPhongEnergy = 0.99;
 
-template <class... Functions>
-struct Overloaded : Functions... {
-  using Functions::operator()...;
-};
-template <class... Functions>
-Overloaded(Functions...) -> Overloaded<Functions...>;  // which clang 14, that lints, does not find by itself
-
-// ---- which kernel ---------------------------------------------------------------------------------------------------
-
 bool isNearlyZero(const TexturedFloat& alpha) { return alpha.texture == kNone && alpha.value < kSmallestAlpha; }
+
+// The ratio, or the nearest on its side of 1 that is kIndexMatched away from 1.
+double awayFromMatched(double ratio) {
+  if (std::abs(ratio - 1) >= kIndexMatched) return ratio;
+  return ratio < 1 ? 1 - kIndexMatched : 1 + kIndexMatched;
+}
 
 // Interior over exterior index; of a rough boundary kept kIndexMatched away from 1.
 double relativeIor(const Dielectric& dielectric) {
   const double ratio = dielectric.intIor / dielectric.extIor;
-  if (dielectric.thin || isSmooth(dielectric) || std::abs(ratio - 1) >= kIndexMatched) return ratio;
-  return ratio < 1 ? 1 - kIndexMatched : 1 + kIndexMatched;
+  return dielectric.thin || isSmooth(dielectric) ? ratio : awayFromMatched(ratio);
 }
-
-// The kernel of a BSDF, by its roughness, distribution and anisotropy.
-BsdfKind kindOf(const Diffuse&) { return BsdfKind::diffuse; }
-BsdfKind kindOf(const Conductor& conductor) {
-  if (conductor.alphaV) {
-    return conductor.distribution == Distribution::ggx ? BsdfKind::anisotropicConductor
-                                                       : BsdfKind::anisotropicBeckmannConductor;
-  }
-  if (isSmooth(conductor)) return BsdfKind::conductor;
-  return conductor.distribution == Distribution::ggx ? BsdfKind::roughConductor : BsdfKind::beckmannConductor;
-}
-BsdfKind kindOf(const Dielectric& dielectric) {
-  if (dielectric.thin) return BsdfKind::thinDielectric;
-  if (dielectric.alphaV) {
-    return dielectric.distribution == Distribution::ggx ? BsdfKind::anisotropicDielectric
-                                                        : BsdfKind::anisotropicBeckmannDielectric;
-  }
-  if (isSmooth(dielectric)) return BsdfKind::dielectric;
-  return dielectric.distribution == Distribution::ggx ? BsdfKind::roughDielectric : BsdfKind::beckmannDielectric;
-}
-BsdfKind kindOf(const Plastic& plastic) {
-  if (isSmooth(plastic)) return BsdfKind::plastic;
-  return plastic.distribution == Distribution::ggx ? BsdfKind::roughPlastic : BsdfKind::beckmannPlastic;
-}
-BsdfKind kindOf(const Phong&) { return BsdfKind::phong; }
-BsdfKind kindOf(const Principled& principled) {
-  return principled.thin ? BsdfKind::principledThin : BsdfKind::principled;
-}
-
-uint32_t lobesOf(BsdfKind kind);
-BsdfKind kindOf(const Material& material, const Scene& scene, bool passes = false);
-
-// The lobes of all parts of a blend together: kHasDelta and kHasFinite. passes: without what lets light straight on.
-uint32_t lobesOf(const Blend& blend, const Scene& scene, bool passes) {
-  uint32_t lobes = 0;
-  for (const uint32_t index : blend.materials) {
-    const Material& part = scene.materials[index];
-    if (passes && isIndexMatched(part)) continue;
-    lobes |= lobesOf(kindOf(part, scene)) | (part.opacity && !passes ? kHasDelta : 0u);
-  }
-  return lobes;
-}
-BsdfKind kindOf(const Material& material, const Scene& scene, bool passes) {
-  return std::visit(Overloaded{[&](const Blend& blend) {
-                                 return (lobesOf(blend, scene, passes) & kHasFinite) != 0 ? BsdfKind::blend
-                                                                                          : BsdfKind::deltaBlend;
-                               },
-                               [](const auto& bsdf) { return kindOf(bsdf); }},
-                    material.kind);
-}
-
-// Feature bits of the kernels that have a BSDF.
-uint32_t featureOf(BsdfKind kind) {
-  if ((bitOf(kind) & kCompoundKinds) != 0) return kCompoundBsdfs | kLayeredBsdfs | kSpecularBsdfs;
-  switch (kind) {
-    case BsdfKind::diffuse:
-      return 0;
-    case BsdfKind::conductor:
-    case BsdfKind::dielectric:
-    case BsdfKind::roughConductor:
-      return kSpecularBsdfs;
-    default:
-      return kLayeredBsdfs | kSpecularBsdfs;  // kernels with the second have the first
-  }
-}
-
-// The lobes of a BSDF itself: kHasDelta and kHasFinite.
-uint32_t lobesOf(BsdfKind kind) {
-  switch (kind) {
-    case BsdfKind::conductor:
-    case BsdfKind::dielectric:
-    case BsdfKind::thinDielectric:
-    case BsdfKind::deltaBlend:
-      return kHasDelta;
-    case BsdfKind::plastic:
-      return kHasDelta | kHasFinite;
-    default:
-      return kHasFinite;
-  }
-}
-
-// ---- means of textured values ---------------------------------------------------------------------------------------
-
-// Mean over the texels of a bitmap, or of a checkerboard's two colours.
-Rgb mean(const Texture& texture) {
-  if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {
-    Rgb sum{};
-    for (size_t i = 0; i < 3; ++i) sum[i] = (checkerboard->color0[i] + checkerboard->color1[i]) / 2;
-    return sum;
-  }
-  const Bitmap& bitmap = *std::get<BitmapTexture>(texture.kind).bitmap;
-  Rgb sum{};
-  const size_t pixels = size_t{bitmap.width} * bitmap.height;
-  for (size_t p = 0; p < pixels; ++p) {
-    for (size_t i = 0; i < 3; ++i) sum[i] += bitmap.pixels[p * bitmap.channels + (bitmap.channels == 3 ? i : 0)];
-  }
-  for (double& channel : sum) channel /= static_cast<double>(std::max<size_t>(pixels, 1));
-  return sum;
-}
-
-Rgb mean(const TexturedRgb& colour, const Scene& scene) {
-  return colour.texture == kNone ? colour.value : mean(scene.textures[colour.texture]);
-}
-
-// The greatest value of any channel.
-double greatest(const Texture& texture) {
-  if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {
-    return std::max(std::ranges::max(checkerboard->color0), std::ranges::max(checkerboard->color1));
-  }
-  const std::vector<float>& pixels = std::get<BitmapTexture>(texture.kind).bitmap->pixels;
-  return pixels.empty() ? 0 : static_cast<double>(std::ranges::max(pixels));
+// The index of a principled BSDF, kept as far from 1 where light is refracted.
+double relativeIor(const Principled& principled) {
+  const bool transmits = principled.specTrans.texture != kNone || principled.specTrans.value != 0;
+  return principled.thin || !transmits ? principled.eta : awayFromMatched(principled.eta);
 }
 
 double average(const Rgb& colour) { return (colour[0] + colour[1] + colour[2]) / 3; }
@@ -188,7 +80,7 @@ class Compiler {
   }
 
   void operator()(const Principled& principled) {
-    record_.eta[0] = static_cast<float>(principled.eta);
+    record_.eta[0] = static_cast<float>(relativeIor(principled));
     assignTextured(record_.reflectance, record_.reflectanceTexture, principled.baseColor);
     assignTextured(record_.alpha, record_.alphaTexture, principled.roughness);
   }
@@ -220,16 +112,16 @@ class Compiler {
     assignTextured(record_.reflectance, record_.reflectanceTexture, phong.diffuseReflectance);
     assignTextured(record_.specular, record_.specularTexture, phong.specularReflectance);
     record_.alpha = static_cast<float>(phong.exponent);
-    const Rgb diffuse = mean(phong.diffuseReflectance, scene_), specular = mean(phong.specularReflectance, scene_);
-    // Mitsuba's limit on the sum of both colours, by their means where they are textured.
-    double brightest = 0;
-    for (size_t i = 0; i < 3; ++i) brightest = std::max(brightest, diffuse[i] + specular[i]);
+    // Mitsuba's limit on the sum of both colours, by their maxima where they are textured.
+    const double brightest =
+        std::ranges::max(greatest(phong.diffuseReflectance, scene_) + greatest(phong.specularReflectance, scene_));
     if (brightest > 1) {
       const auto scale = static_cast<float>(kPhongEnergy / brightest);
       for (float& channel : record_.reflectance) channel *= scale;
       for (float& channel : record_.specular) channel *= scale;
     }
-    record_.specularPick = specularShare(luminance(specular), luminance(diffuse));
+    record_.specularPick = specularShare(luminance(mean(phong.specularReflectance, scene_)),
+                                         luminance(mean(phong.diffuseReflectance, scene_)));
   }
 
  private:
@@ -335,12 +227,12 @@ MaterialRecord compileMaterial(const Material& material, const Scene& scene, boo
   }
   // The fields of this kind of BSDF.
   std::visit(Compiler(record, scene, passes), material.kind);
-  // Light that is reflected again and again between base and boundary has to fade. Constants are at most 1.
+  // Light that is reflected again and again between base and boundary has to fade.
   const auto* plastic = std::get_if<Plastic>(&material.kind);
-  if (plastic != nullptr && plastic->nonlinear && plastic->diffuseReflectance.texture != kNone) {
-    const double most = greatest(scene.textures[plastic->diffuseReflectance.texture]);
+  if (plastic != nullptr && plastic->nonlinear) {
+    const double most = std::ranges::max(greatest(plastic->diffuseReflectance, scene));
     if (most * record.internalDiffuse >= 1) {
-      throw SceneError(material.source, "diffuse_reflectance texture of a nonlinear plastic has values up to " +
+      throw SceneError(material.source, "diffuse_reflectance of a nonlinear plastic has values up to " +
                                             std::to_string(most) + "; expected less than " +
                                             std::to_string(1 / record.internalDiffuse));
     }

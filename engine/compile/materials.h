@@ -18,8 +18,9 @@ bool isSmooth(const Conductor& conductor);
 bool isSmooth(const Dielectric& dielectric);
 bool isSmooth(const Plastic& plastic);
 
-// The scene is read for the means of textures, which decide how often a lobe is sampled. passes: light goes straight on
-// through it (passages.h), so the record is that of the rest of the surface.
+// The scene is read for the means of textures, which decide how often a lobe is sampled, and for their greatest values,
+// which limit plastic and phong. Throws SceneError for a nonlinear plastic that is too bright. passes: light goes
+// straight on through it (passages.h), so the record is that of the rest of the surface.
 MaterialRecord compileMaterial(const Material& material, const Scene& scene, bool passes = false);
 // Parameters that only compound BSDFs have; empty for other materials.
 CompoundRecord compileCompound(const Material& material);

@@ -3,19 +3,13 @@
 #include <utility>
 
 #include "engine/compile/materials.h"
+#include "engine/compile/overloaded.h"
 #include "engine/pilot/finished_plan.h"
 #include "engine/plan/memory_plan.h"
 #include "engine/scene/scene_error.h"
 
 namespace wavecrest {
 namespace {
-
-template <class... Functions>
-struct Overloaded : Functions... {
-  using Functions::operator()...;
-};
-template <class... Functions>
-Overloaded(Functions...) -> Overloaded<Functions...>;  // which clang 14, that lints, does not find by itself
 
 // The plugin of a material's innermost BSDF.
 std::string nameOf(const Material& material) {

@@ -38,8 +38,9 @@ struct SceneInspection {
   PathClassTable paths;
 };
 
-// settings: precision, accel, wave size, threads and the radius of merges count; the method does not. Throws
-// std::runtime_error where no method can render the scene.
+// settings: what decides kernels, memory or the radius of merges counts, as precision, accel, instancing, wave size,
+// threads, radius, chains and the budget of memory; the method does not. Throws std::runtime_error where no method can
+// render the scene.
 SceneInspection inspectScene(const Scene& scene, RenderSettings settings);
 
 }  // namespace wavecrest

@@ -93,17 +93,18 @@ struct PrincipledBsdf {
     WAVECREST_INLINE Real transmitPick(Mask above, Real fresnel) const {
       return select(above, glass * (Real(1) - fresnel), Real(1) - fresnel);
     }
-    // GTR1: D = (a^2 - 1) / (pi ln a^2 (1 + (a^2 - 1) cos^2)), sampled in proportion to D cos (Burley 2012, B.2).
-    WAVECREST_INLINE Real coatDensity(Real cos2) const {
-      const Real less = coatAlpha2 - Real(1);
-      return less * Real(kInvPi) / (log(coatAlpha2) * mulAdd(less, cos2, Real(1)));
+    // GTR1: D = (a^2 - 1) / (pi ln a^2 (1 + (a^2 - 1) cos^2)), sampled in proportion to D cos (Burley 2012, B.2):
+    // cos^2 = (1 - a^(2 (1 - u))) / (1 - a^2). Where the lobe is narrow, 1 - cos^2 has few digits. So the sum in D is
+    // a^2 cos^2 + sin^2, and the draw is sin^2 = a^2 (a^(-2 u) - 1) / (1 - a^2).
+    WAVECREST_INLINE Real coatDensity(Real cos2, Real sin2) const {
+      return (coatAlpha2 - Real(1)) * Real(kInvPi) / (log(coatAlpha2) * mulAdd(coatAlpha2, cos2, sin2));
     }
     WAVECREST_INLINE Vec3<Real> sampleCoat(Real u1, Real u2) const {
       const Real one(1);
-      const Real cos2 = (one - exp(log(coatAlpha2) * (one - u1))) / (one - coatAlpha2);
-      const Real sine = sqrt(max(one - cos2, Real(0)));
+      const Real sin2 = min(coatAlpha2 * expm1(-log(coatAlpha2) * u1) / (one - coatAlpha2), one);
+      const Real sine = sqrt(sin2);
       const SinCos<Real> azimuth = sinCos2Pi(u2);
-      return {sine * azimuth.cos, sine * azimuth.sin, sqrt(max(cos2, Real(0)))};
+      return {sine * azimuth.cos, sine * azimuth.sin, sqrt(one - sin2)};
     }
   };
 
@@ -160,8 +161,8 @@ struct PrincipledBsdf {
     const Vec3<Real> reflected =
         select(above, reflectance(input, numbers, tint, fresnel, wiCosine), grey(numbers.glass * fresnel));
     const Real through = numbers.glass * (one - fresnel) * (input.walk == Walk::camera ? one : stretch * stretch);
-    const Vec3<Real> transmitted{sqrt(numbers.base.x) * through, sqrt(numbers.base.y) * through,
-                                 sqrt(numbers.base.z) * through};
+    const auto tinted = [&](Real base) WAVECREST_LAMBDA { return sqrt(max(base, zero)) * through; };
+    const Vec3<Real> transmitted{tinted(numbers.base.x), tinted(numbers.base.y), tinted(numbers.base.z)};
     const Mask visible = possible & (!reflect | (fresnel > zero)) & (above | (numbers.glass > zero));
     Vec3<Real> f = zeroUnless(visible, select(reflect, reflected, transmitted) * (Real(4) * k * byWi * byWo));
 
@@ -169,7 +170,8 @@ struct PrincipledBsdf {
     const Mask front = above & woAbove;
     const Real inverseTotal = one / numbers.total(above), inverseWoTotal = one / numbers.total(woAbove);
     const Real coatCosine = abs(h.z) * inverseLength;
-    const Real coatDensity = numbers.coatDensity(coatCosine * coatCosine);
+    const Real coatSin2 = mulAdd(h.x, h.x, h.y * h.y) * inverseLength * inverseLength;
+    const Real coatDensity = numbers.coatDensity(coatCosine * coatCosine, coatSin2);
     const Real coatPdf = coatDensity * coatCosine * reciprocal(max(Real(4) * wiCosine, Real(1e-12f)));
     const Real diffuse =
         numbers.diffuse * Real(kInvPi) *

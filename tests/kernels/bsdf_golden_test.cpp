@@ -81,7 +81,7 @@ BsdfCase caseOf(const Json& entry) {
     return blendCase("", {1 - weight, weight}, parts, true, opacityOf(m));
   }
   BsdfCase bsdf = bsdfCase("", kindOf(m), true, opacityOf(m));
-  // Mitsuba fits a polynomial to the integral that we evaluate; materials_test.cpp compares the two.
+  // Mitsuba fits a polynomial to the integral that we evaluate.
   if (entry.contains("fdrInt")) bsdf.tables->materials.front().internalDiffuse = entry["fdrInt"];
   return bsdf;
 }

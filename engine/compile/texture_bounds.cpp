@@ -1,0 +1,60 @@
+#include "engine/compile/texture_bounds.h"
+
+#include <algorithm>
+
+namespace wavecrest {
+namespace {
+
+// Mean over the texels of a bitmap, or of a checkerboard's two colours.
+Rgb mean(const Texture& texture) {
+  if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {
+    Rgb sum{};
+    for (size_t i = 0; i < 3; ++i) sum[i] = (checkerboard->color0[i] + checkerboard->color1[i]) / 2;
+    return sum;
+  }
+  const Bitmap& bitmap = *std::get<BitmapTexture>(texture.kind).bitmap;
+  Rgb sum{};
+  const size_t pixels = size_t{bitmap.width} * bitmap.height;
+  for (size_t p = 0; p < pixels; ++p) {
+    for (size_t i = 0; i < 3; ++i) sum[i] += bitmap.pixels[p * bitmap.channels + (bitmap.channels == 3 ? i : 0)];
+  }
+  for (double& channel : sum) channel /= static_cast<double>(std::max<size_t>(pixels, 1));
+  return sum;
+}
+
+// The fourth texel of the cells of a baked attribute lies outside of their triangles (engine/load/mesh_attributes.h).
+bool isOutside(const BitmapTexture& texture, size_t pixel) {
+  return texture.ofMesh && pixel % texture.bitmap->width % 2 == 1 && pixel / texture.bitmap->width % 2 == 1;
+}
+
+Rgb greatest(const Texture& texture) {
+  Rgb most{};
+  const auto add = [&](size_t channel, double value) { most[channel] = std::max(most[channel], value); };
+  if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {
+    for (size_t i = 0; i < 3; ++i) {
+      add(i, checkerboard->color0[i]);
+      add(i, checkerboard->color1[i]);
+    }
+    return most;
+  }
+  const auto& ofBitmap = std::get<BitmapTexture>(texture.kind);
+  const Bitmap& bitmap = *ofBitmap.bitmap;
+  const size_t pixels = size_t{bitmap.width} * bitmap.height;
+  for (size_t p = 0; p < pixels; ++p) {
+    if (isOutside(ofBitmap, p)) continue;
+    for (size_t i = 0; i < 3; ++i) add(i, bitmap.pixels[p * bitmap.channels + (bitmap.channels == 3 ? i : 0)]);
+  }
+  return most;
+}
+
+}  // namespace
+
+Rgb mean(const TexturedRgb& colour, const Scene& scene) {
+  return colour.texture == kNone ? colour.value : mean(scene.textures[colour.texture]);
+}
+
+Rgb greatest(const TexturedRgb& colour, const Scene& scene) {
+  return colour.texture == kNone ? colour.value : greatest(scene.textures[colour.texture]);
+}
+
+}  // namespace wavecrest
