@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -163,9 +164,13 @@ struct NearBox {
   }
 };
 
-// Rays are intersected in single precision, which holds numbers from 1e-38 to 3e38. The test of a face multiplies three
-// lengths, that of a sphere two.
-constexpr double kLargestRadius = 3e12, kSmallestRadius = 5e-13, kSmallestSphere = 1e-18;
+// Rays are intersected in single precision, and numbers below 1e-38 are flushed to zero. The test of a sphere
+// multiplies two lengths. That of a face multiplies two edges and the height of the ray's origin above the face: at the
+// smallest radius R, edges of 1e-4 R and heights of 1e-6 R are met.
+constexpr double kLargestRadius = 2e12, kSmallestRadius = 1e-8, kSmallestSphere = 1e-18;
+// Largest product of the squared radius and rayReach. Scenes have a reach of up to nine radii (originOf) without the
+// eye and lights.
+constexpr double kLargestProduct = 1e38;
 
 // Throws SceneError where the scene is too large or too small, or a sphere too small. radii: of the world, and of
 // groups in their spaces. What is not a number is refused as well.
@@ -181,6 +186,19 @@ void checkRange(const Scene& scene, const std::vector<double>& radii) {
     throw SceneError(shape.source,
                      fmt::format("a sphere's radius is {:g}; expected at least {:g}", sphere->radius, kSmallestSphere));
   }
+}
+
+// Throws SceneError where the eye or a light is too far from a large scene for the test of a face. origins: of rays.
+void checkReach(const Scene& scene, const BoundingSphere& bounds, const Box& origins) {
+  const double radius2 = bounds.radius * bounds.radius;
+  const double reach = rayReach(boxOf(Extent{.low = vec(bounds.low), .high = vec(bounds.high)}), origins);
+  if (radius2 * reach <= kLargestProduct) return;
+  // A third of the reach is the extent of all along an axis.
+  throw SceneError(
+      SourceLocation{scene.name},
+      fmt::format("the scene, its camera and its lights extend over {:g}; expected at most {:g} for a scene "
+                  "of radius {:g}",
+                  reach / 3, kLargestProduct / radius2 / 3, bounds.radius));
 }
 
 // The view of what is compiled, but for the camera and the intersectors: pointers to it, and what kernels decide by.
@@ -231,7 +249,8 @@ void completeView(const Scene& scene, uint32_t features, bool keepsInstances, Co
 
 }  // namespace
 
-Box rayOrigins(const Scene& scene, const BoundingSphere& bounds, const double (&eye)[3], const Double3& origin) {
+Box rayOrigins(const Scene& scene, const BoundingSphere& bounds, const double (&eye)[3], const Double3& origin,
+               double farthestLight) {
   Extent points;
   points.include(vec(eye));
   const Double3 center = vec(bounds.center);
@@ -239,7 +258,7 @@ Box rayOrigins(const Scene& scene, const BoundingSphere& bounds, const double (&
     const std::optional<Double3> position = positionOf(emitter);
     if (!position) continue;
     const Double3 away = *position - origin - center;
-    const double nearer = std::min(1.0, kFarthestLight * bounds.radius / length(away));
+    const double nearer = std::min(1.0, farthestLight * bounds.radius / length(away));
     points.include(center + nearer * away);
   }
   return boxOf(points);
@@ -294,6 +313,8 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   compiled->bounds = bounds;
   SceneView<S>& view = compiled->view;
   view.camera = compileCamera(scene.sensor, scene.film, origin);
+  checkReach(scene, bounds,
+             rayOrigins(scene, bounds, view.camera.origin, origin, std::numeric_limits<double>::infinity()));
   setClips(scene.sensor, geometry, bounds, view.camera);
 
   // Intersectors first: what they need only while they are built is gone before the records are made.

@@ -58,11 +58,12 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
                                                Instancing instancing = Instancing::automatic);
 
 // Around the points outside of the scene's bounds that rays may start from, relative to `origin` as all else: the eye,
-// and lights that have a place. Lights beyond kFarthestLight radii of the scene count as if they were there:
+// and lights that have a place. Lights beyond farthestLight radii of the scene count as if they were there:
 // intersectors widen boxes in proportion, and so few of such a light's paths meet the scene that what slips through is
 // lost in noise.
-Box rayOrigins(const Scene& scene, const BoundingSphere& bounds, const double (&eye)[3], const Double3& origin);
 constexpr double kFarthestLight = 1024;
+Box rayOrigins(const Scene& scene, const BoundingSphere& bounds, const double (&eye)[3], const Double3& origin,
+               double farthestLight = kFarthestLight);
 
 class SceneGeometry;
 

@@ -59,6 +59,11 @@ bool keepsInstances(const Scene& scene, Accel accel, Instancing instancing) {
   const bool few = copies <= kMostCopies && deforming == nullptr;
   const bool keeps = instancing == Instancing::kept || (instancing == Instancing::automatic && !few);
   if (keeps && (accel == Accel::small || accel == Accel::embree)) {
+    if (deforming != nullptr) {
+      throw SceneError(deforming->source,
+                       "an instance of a sphere scales it differently along its axes, for an intersector that knows no "
+                       "instances; expected `--accel bvh`");
+    }
     throw SceneError(scene.instances.front().source,
                      fmt::format("instances, {} primitives as copies, for an intersector that knows none; expected "
                                  "`--accel bvh`, or `--instances expand`",

@@ -19,14 +19,15 @@ using Edge = std::pair<uint32_t, uint32_t>;
 
 // Whether the triangles (a, b, c) and (d, otherC, otherB), which share the edge b-c, are one parallelogram with a
 // continuous parameterisation: d = b + c - a in position, uv and normal, and the same on both sides of the edge. d is
-// no farther off than CornerWeld makes good.
-bool formParallelogram(const Mesh& mesh, const FaceCorners& triangle, const FaceCorners& other, const Double3& origin) {
+// no farther off than CornerWeld makes good. For copies it is exact: rounding their vertices may take up all of that.
+bool formParallelogram(const Mesh& mesh, const FaceCorners& triangle, const FaceCorners& other, const Double3& origin,
+                       bool copied) {
   const auto [a, b, c] = triangle;
   const auto [d, otherC, otherB] = other;
   const Double3 e1 = position(mesh, b) - position(mesh, a), e2 = position(mesh, c) - position(mesh, a);
   const Double3 gap = position(mesh, d) - position(mesh, a) - e1 - e2;
   if (length(gap) > 1e-6 * (length(e1) + length(e2))) return false;
-  const double limit = kQuadUnits * kUnitRoundoff * reachOf(position(mesh, a) - origin, e1, e2);
+  const double limit = copied ? 0 : kQuadUnits * kUnitRoundoff * reachOf(position(mesh, a) - origin, e1, e2);
   if (std::ranges::any_of(gap, [limit](double along) { return std::abs(along) > limit; })) return false;
   if (!mesh.uvs.empty()) {
     const auto& uvs = mesh.uvs;
@@ -61,7 +62,7 @@ bool hasArea(const Mesh& mesh, const FaceCorners& corners) {
 
 // Quads of pairs of triangles that form parallelograms, then the triangles that are left. A triangle takes its partner
 // among the earlier ones, across its first edge that has one.
-MeshFaces pairFaces(const Mesh& mesh, const Double3& origin) {
+MeshFaces pairFaces(const Mesh& mesh, const Double3& origin, bool copied) {
   MeshFaces faces;
   const auto count = static_cast<uint32_t>(mesh.triangles.size());
   const std::vector<uint32_t> welded = weldedVertices(mesh);
@@ -77,7 +78,7 @@ MeshFaces pairFaces(const Mesh& mesh, const Double3& origin) {
       const uint32_t other = twin->second / 3, d = twin->second % 3;
       const auto& o = mesh.triangles[other];
       if (used[other]) continue;
-      if (!formParallelogram(mesh, {a, b, c}, {o[d], o[(d + 1) % 3], o[(d + 2) % 3]}, origin)) continue;
+      if (!formParallelogram(mesh, {a, b, c}, {o[d], o[(d + 1) % 3], o[(d + 2) % 3]}, origin, copied)) continue;
       used[i] = used[other] = true;
       faces.quads.push_back({a, b, c});
     }
@@ -94,10 +95,10 @@ MeshFaces pairFaces(const Mesh& mesh, const Double3& origin) {
 
 }  // namespace
 
-MeshFaces facesOf(const Mesh& mesh, bool usesUv, const Double3& origin, const ParallelFor& parallelFor) {
+MeshFaces facesOf(const Mesh& mesh, bool usesUv, const Double3& origin, bool copied, const ParallelFor& parallelFor) {
   // Without texture coordinates each triangle has its own (u, v), which depend on the order of its corners.
   const bool canTurn = !usesUv || !mesh.uvs.empty(), merges = canTurn && mesh.triangles.size() <= kMergeLimit;
-  MeshFaces faces = merges ? pairFaces(mesh, origin) : MeshFaces{};
+  MeshFaces faces = merges ? pairFaces(mesh, origin, copied) : MeshFaces{};
   faces.canTurn = canTurn;
   if (merges) {
     std::erase_if(faces.quads, [&](const FaceCorners& quad) { return !hasArea(mesh, quad); });

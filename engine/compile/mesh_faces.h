@@ -27,7 +27,8 @@ struct MeshFaces {
   }
 };
 // usesUv: (u, v) matters to the material or the light. Without texture coordinates triangles then stay apart, since
-// each has its own (u, v). origin: that of the kernels, in the mesh's coordinates.
-MeshFaces facesOf(const Mesh& mesh, bool usesUv, const Double3& origin, const ParallelFor& parallelFor);
+// each has its own (u, v). origin: that of the kernels, in the mesh's coordinates. copied: the faces are those of
+// copies in other places, whose vertices are rounded once more. Only exact parallelograms then become quads.
+MeshFaces facesOf(const Mesh& mesh, bool usesUv, const Double3& origin, bool copied, const ParallelFor& parallelFor);
 
 }  // namespace wavecrest

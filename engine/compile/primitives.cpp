@@ -131,7 +131,7 @@ PrimitiveList::Surface PrimitiveList::surfaceOf(const Shape& shape, bool copied)
     surface.moved = !copied;
   }
   surface.faces = &faces_.emplace_back(
-      facesOf(*surface.mesh, usesUv(scene_, shape), surface.moved ? Double3{} : origin, parallelFor_));
+      facesOf(*surface.mesh, usesUv(scene_, shape), surface.moved ? Double3{} : origin, copied, parallelFor_));
   return surface;
 }
 

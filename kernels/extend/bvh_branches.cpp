@@ -213,6 +213,10 @@ class Builder {
     measure(range);
     return range;
   }
+  // Sorts the pieces of a leaf by their ids.
+  void sortLeaf(const Range& range) const {
+    std::sort(pieces_ + range.begin, pieces_ + range.end, [](const Piece& a, const Piece& b) { return a.id < b.id; });
+  }
   // The node of a range, which is no leaf, and all below it. nodes: where this thread takes its nodes from.
   Subtree build(const Range& range, size_t depth, NodeBlock& nodes) const {
     // Split the child of the largest surface until there are eight children, or all of them are leaves.
@@ -249,6 +253,7 @@ class Builder {
     node.count = static_cast<uint32_t>(count);
     for (size_t i = 0; i < count; ++i) {
       const auto& [below, totals] = subtrees[i];
+      if (below == nullptr) sortLeaf(children[i]);
       node.box[i] = children[i].all.box();
       node.child[i] = {below, children[i].begin, below == nullptr ? children[i].size() : 0};
       built.totals.nodes += totals.nodes;
@@ -338,6 +343,7 @@ BranchTree::BranchTree(Pieces& pieces, const ParallelFor& parallelFor, size_t le
   bounds = whole.all.box();
   NodeBlock nodes(memory);
   const Subtree tree = pieces.size() > leafSize ? builder.build(whole, 0, nodes) : Subtree{};
+  if (tree.node == nullptr) builder.sortLeaf(whole);
   totals = tree.totals;
   root = {tree.node, 0, tree.node == nullptr ? static_cast<uint32_t>(pieces.size()) : 0};
   nodes_ = memory.release();

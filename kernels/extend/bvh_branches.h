@@ -2,7 +2,8 @@
 //
 // Built from above by the binned surface area heuristic (Wald, "On fast Construction of SAH-based Bounding Volume
 // Hierarchies", RT 2007): of the children that a node has so far, the one of the largest surface is split until there
-// are eight. Pieces are put into the order of the leaves in place, so a leaf is a range of them. The result depends on
+// are eight. Pieces are put into the order of the leaves in place, so a leaf is a range of them. Within a leaf they are
+// in the order of their ids: of equally near hits rays take that of the lowest (BvhRay::keep). The result depends on
 // the pieces alone and not on how many threads build.
 #pragma once
 

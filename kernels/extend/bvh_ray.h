@@ -33,8 +33,9 @@ WAVECREST_INLINE uint32_t greatestAxis(float x, float y, float z) {
   return (1 - isX) * (2 - static_cast<uint32_t>(y >= z));
 }
 
-// The power of two up to |a|: the factor for a shadow ray's direction, which is as long as its segment, against spheres
-// so large that their products would overflow. a: 1 over the direction's greatest part.
+// The power of two up to |a|. a: 1 over the direction's greatest part. Directions are multiplied by it for the test of
+// spheres, whose products float would not hold for the long segments of shadow rays or the short directions of rays in
+// small groups. Of a unit vector it is 1 or, through rounding, 1/2, and changes no distance.
 constexpr uint32_t kExponentBits = 0x7f800000u;
 WAVECREST_INLINE float powerUpTo(float a) { return std::bit_cast<float>(std::bit_cast<uint32_t>(a) & kExponentBits); }
 WAVECREST_INLINE Float powerUpTo(Float a) { return fromBits(bits(a) & UInt(kExponentBits)); }
@@ -122,7 +123,7 @@ struct alignas(64) BvhRay {
   }
   WAVECREST_INLINE void visit(const SphereLeaf& spheres) {
     using Group = FloatGroup<kLeafSize>;
-    const Group scale(kAnyHit ? powerUpTo(shear[2]) : 1.0f);
+    const Group scale(powerUpTo(shear[2]));
     const Group distance =
         scale * intersectSpheres(loadPoints(spheres.center), loadGroup<kLeafSize>(spheres.radius),
                                  broadcast<kLeafSize>(origin), broadcast<kLeafSize>(direction) * scale);
@@ -131,8 +132,9 @@ struct alignas(64) BvhRay {
 
  private:
   // Takes the nearest of a leaf's hits if it is nearer than the one so far. Of equally near hits the one of the lowest
-  // id is kept, so that the result does not depend on the order of visits. Every third leaf or so has a nearer hit, and
-  // no processor foresees which: no branches, so the walkers' steps overlap.
+  // id is kept, so that the result does not depend on the order of visits. In a leaf that is the first slot's: they are
+  // in the order of ids. Every third leaf or so has a nearer hit, and no processor foresees which: no branches, so the
+  // walkers' steps overlap.
   WAVECREST_INLINE void keep(MaskGroup<kLeafSize> met, FloatGroup<kLeafSize> distance, FloatGroup<kLeafSize> second,
                              FloatGroup<kLeafSize> third, const uint32_t* ids) {
     using Group = FloatGroup<kLeafSize>;
@@ -212,9 +214,8 @@ struct BvhPacket {
     end = greatestLane(t);
   }
   WAVECREST_INLINE void visit(const SphereLeaf& spheres) {
-    forEachSphere(spheres, direction, [&](Float distance, UInt sphere) HWY_ATTR {
-      keep(distance > Float(0), distance, distance, Float(0), sphere);
-    });
+    forEachSphere(spheres, [&](Float distance, UInt sphere)
+                               HWY_ATTR { keep(distance > Float(0), distance, distance, Float(0), sphere); });
     end = greatestLane(t);
   }
 
@@ -274,12 +275,14 @@ struct BvhPacket {
       if (any(met)) take(met, hit, face);
     });
   }
-  // Calls take(distances in units of `along`, id) for each sphere; they are negative where a ray misses it.
+  // Calls take(distances, id) for each sphere; they are negative where a ray misses it.
   template <class Take>
-  WAVECREST_INLINE void forEachSphere(const SphereLeaf& spheres, Vec3<Float> along, const Take& take) const {
+  WAVECREST_INLINE void forEachSphere(const SphereLeaf& spheres, const Take& take) const {
+    const Float scale = powerUpTo(shear.z);
+    const Vec3<Float> along = direction * scale;
     forEachSlot(spheres.id, [&](size_t slot, UInt sphere) HWY_ATTR {
       const Vec3<Float> center{spheres.center[0][slot], spheres.center[1][slot], spheres.center[2][slot]};
-      take(intersectSpheres(center, Float(spheres.radius[slot]), origin, along), sphere);
+      take(intersectSpheres(center, Float(spheres.radius[slot]), origin, along) * scale, sphere);
     });
   }
 
@@ -300,7 +303,10 @@ struct BvhPacket {
     inverses[1][axis] = most;
     slack[axis] = backward || forward ? 0 : std::numeric_limits<float>::infinity();
     nearPlane[axis] = nearPlanes(most);
-    const float low = leastLane(o), high = greatestLane(o);
+    // The reductions may drop lanes beside a NaN, so origins that are no numbers are left out.
+    const Float far(std::numeric_limits<float>::infinity());
+    const Mask known = abs(o) < far;
+    const float low = leastLane(select(known, o, far)), high = greatestLane(select(known, o, -far));
     nearOrigin[axis] = backward ? low : high;
     farOrigin[axis] = backward ? high : low;
     return inverted;

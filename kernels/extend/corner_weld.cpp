@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "kernels/double_vectors.h"
 #include "kernels/extend/offset.h"
@@ -14,6 +16,9 @@ constexpr double kWeldUnits = 2 * kQuadUnits + 2;
 // Whether a face is large enough to be welded: its shortest edge, in units of the tolerance.
 constexpr double kLeastEdge = 64;
 bool isLarge(double edge2, double tolerance) { return edge2 >= kLeastEdge * kLeastEdge * tolerance * tolerance; }
+// Thickness of a slab, in units of the widest tolerance: few corners are so close to a side that both slabs are
+// searched.
+constexpr double kSlab = 8;
 
 double toleranceOf(const PrimitiveRecord<double>& record) {
   return kWeldUnits * kUnitRoundoff * reachOf(vec(record.p0), vec(record.e1), vec(record.e2));
@@ -41,32 +46,58 @@ Corner cornerAt(const PrimitiveRecord<double>& record, double u, double v) {
 }
 
 CornerWeld::CornerWeld(const std::vector<PrimitiveRecord<double>>& quads) {
-  std::vector<Point> all;
   for (const PrimitiveRecord<double>& quad : quads) {
-    const double tolerance = toleranceOf(quad), edge2 = shortestEdge2(quad);
-    if (!isLarge(edge2, tolerance)) continue;
+    const auto tolerance = static_cast<float>(toleranceOf(quad));
+    const double edge2 = shortestEdge2(quad);
+    if (tolerance == 0 || !isLarge(edge2, double{tolerance})) continue;
     for (const double u : {0.0, 1.0}) {
-      for (const double v : {0.0, 1.0}) all.push_back({cornerAt(quad, u, v), static_cast<float>(tolerance), edge2});
+      for (const double v : {0.0, 1.0}) {
+        points_.push_back(
+            {.corner = cornerAt(quad, u, v), .tolerance = tolerance, .edge2 = edge2, .slab = 0, .welds = false});
+      }
     }
-    widest_ = std::max(widest_, static_cast<float>(tolerance));
+    widest_ = std::max(widest_, double{tolerance});
   }
-  std::sort(all.begin(), all.end(), [](const Point& a, const Point& b) { return a.corner < b.corner; });
-  for (const Point& point : all) {
-    if (find(point.corner, point.edge2) == nullptr) points_.push_back(point);
-  }
+  if (points_.empty()) return;
+  slabsPerUnit_ = 1 / (kSlab * widest_);
+  for (Point& point : points_) point.slab = slabOf(double{point.corner[0]});
+  std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) {
+    return std::tie(a.slab, a.corner[1], a.corner[2], a.corner[0]) <
+           std::tie(b.slab, b.corner[1], b.corner[2], b.corner[0]);
+  });
+  // Of the corners at a vertex the first with the widest tolerance becomes the point, since it is near all others.
+  std::vector<Point*> byTolerance;
+  byTolerance.reserve(points_.size());
+  for (Point& point : points_) byTolerance.push_back(&point);
+  std::stable_sort(byTolerance.begin(), byTolerance.end(),
+                   [](const Point* a, const Point* b) { return a->tolerance > b->tolerance; });
+  for (Point* point : byTolerance) point->welds = find(point->corner, point->edge2) == nullptr;
+  std::erase_if(points_, [](const Point& point) { return !point.welds; });
 }
 
+double CornerWeld::slabOf(double x) const { return std::floor(x * slabsPerUnit_); }
+
 const CornerWeld::Point* CornerWeld::find(const Corner& corner, double edge2) const {
-  auto at = std::lower_bound(points_.begin(), points_.end(), corner[0] - widest_,
-                             [](const Point& point, float x) { return point.corner[0] < x; });
-  for (; at != points_.end() && at->corner[0] <= corner[0] + widest_; ++at) {
-    bool near = isLarge(edge2, at->tolerance);
-    for (size_t axis = 0; axis < 3; ++axis) {
-      near = near && std::abs(at->corner[axis] - corner[axis]) <= at->tolerance;
+  if (points_.empty()) return nullptr;
+  const Point* best = nullptr;
+  const double x{corner[0]}, y{corner[1]};
+  const auto search = [&](double slab) {
+    auto at = std::lower_bound(points_.begin(), points_.end(), std::pair{slab, y - widest_},
+                               [](const Point& point, const std::pair<double, double>& from) {
+                                 return std::pair{point.slab, double{point.corner[1]}} < from;
+                               });
+    for (; at != points_.end() && at->slab == slab && double{at->corner[1]} <= y + widest_; ++at) {
+      bool near = at->welds && isLarge(edge2, double{at->tolerance});
+      for (size_t axis = 0; axis < 3; ++axis) {
+        near = near && std::abs(at->corner[axis] - corner[axis]) <= at->tolerance;
+      }
+      if (near && (best == nullptr || at->tolerance > best->tolerance)) best = &*at;
     }
-    if (near) return &*at;
-  }
-  return nullptr;
+  };
+  const double first = slabOf(x - widest_), last = slabOf(x + widest_);
+  search(first);
+  if (last != first) search(last);
+  return best;
 }
 
 Corner CornerWeld::operator()(const Corner& corner, double edge2) const {

@@ -27,11 +27,16 @@ class CornerWeld {
     Corner corner;
     float tolerance;  // greatest distance along an axis of what becomes this point
     double edge2;     // of its quad
+    double slab;      // number of the slab of space along x that the corner is in
+    bool welds;       // it takes the place of others; while the list is made some corners do not
   };
+  // Of the points that take the corner, the one of the widest tolerance, or nullptr.
   const Point* find(const Corner& corner, double edge2) const;
+  double slabOf(double x) const;
 
-  std::vector<Point> points_;  // sorted by x
-  float widest_ = 0;           // greatest tolerance
+  std::vector<Point> points_;  // sorted by slab, then by y: many may lie in one plane across x
+  double widest_ = 0;          // greatest tolerance
+  double slabsPerUnit_ = 0;
 };
 
 // A corner of a quad or triangle before it is welded.

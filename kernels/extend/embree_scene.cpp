@@ -117,7 +117,7 @@ void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
   // Rays from the eye are coherent.
   Query query(context.walk == Walk::camera && context.depth == 1);
   alignas(64) int valid[kWidth];
-  typename Packet<kWidth>::RayHit packet;
+  typename Packet<kWidth>::RayHit packet{};  // Embree leaves the coordinates of misses as they are
   for (size_t i = 0; i < count; i += kWidth) {
     // Trace one packet.
     setValid(count - i, valid);

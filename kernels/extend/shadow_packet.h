@@ -73,11 +73,7 @@ struct ShadowPacket : BvhPacket {
     stopIfBlocked();
   }
   WAVECREST_INLINE void visit(const SphereLeaf& spheres) {
-    const Float scale = powerUpTo(shear.z);
-    forEachSphere(spheres, direction * scale, [&](Float scaled, UInt) HWY_ATTR {
-      const Float distance = scaled * scale;
-      block((distance > Float(0)) & (distance <= t));
-    });
+    forEachSphere(spheres, [&](Float distance, UInt) HWY_ATTR { block((distance > Float(0)) & (distance <= t)); });
     stopIfBlocked();
   }
 

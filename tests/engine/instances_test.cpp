@@ -4,6 +4,7 @@
 
 #include "engine/plan/render_plan.h"
 #include "engine/scene/scene_error.h"
+#include "engine/tasks/flush_to_zero.h"
 #include "tests/effort.h"
 #include "tests/engine/instanced_scenes.h"
 
@@ -178,6 +179,53 @@ TEST(Instances, areMetWhereCopiesAre) { expectSameArrivals<float>(false); }
 TEST(Instances, areMetWhereCopiesAreInDouble) { expectSameArrivals<double>(false); }
 TEST(Instances, ofSpheresAreMetWhereCopiesAre) { expectSameArrivals<float>(true); }
 TEST(Instances, ofSpheresAreMetWhereCopiesAreInDouble) { expectSameArrivals<double>(true); }
+
+// In the group the product of the squares of the direction's length and of the radius is below what float holds.
+TEST(Instances, ofTinySpheresAreMetAtTheirSurface) {
+  constexpr double kRadius = 1e-8, kScale = 1e12, kWorldRadius = kRadius * kScale;
+  Scene scene;
+  scene.groups.push_back({.id = "tiny", .source = {}});
+  Sphere sphere{.center = {0, 0, 0}, .radius = kRadius};
+  sphere.toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+  addShape(scene, sphere, addDiffuse(scene, 0.5, 0.5, 0.5)).group = 0;
+  addInstance(scene, 0, placedAt({0, 0, 0}, {{kScale, 0, 0}, {0, kScale, 0}, {0, 0, kScale}}));
+  setCamera(scene, {0, 0, 3 * kWorldRadius}, 60, 8, 8);
+  const auto compiled = compileScene<float>(scene, Accel::bvh, true, Instancing::kept);
+  Wave<float> wave(kCapacity, {});
+  StageCounters counters;
+  StageContext<float> context;
+  context.scene = &compiled->view;
+  context.counters = &counters;
+  // Towards points within half a radius of the centre.
+  std::vector<RandomRay> rays = randomRays(kCapacity, 1, 5);
+  for (RandomRay& ray : rays) {
+    const Double3 target = ray.origin * (0.25 * kWorldRadius);
+    ray.origin = target - ray.direction * (3 * kWorldRadius);
+    for (double& c : ray.origin) c = static_cast<float>(c);
+  }
+  const FlushToZero flushToZero;
+  for (const WalkKind& walk : allWalks()) {
+    wave.setVertices(0, 0);
+    wave.rays.claim(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) {
+      wave.rays.originX[i] = static_cast<float>(rays[i].origin[0]);
+      wave.rays.originY[i] = static_cast<float>(rays[i].origin[1]);
+      wave.rays.originZ[i] = static_cast<float>(rays[i].origin[2]);
+      wave.rays.directionX[i] = static_cast<float>(rays[i].direction[0]);
+      wave.rays.directionY[i] = static_cast<float>(rays[i].direction[1]);
+      wave.rays.directionZ[i] = static_cast<float>(rays[i].direction[2]);
+    }
+    context.depth = walk.packets ? 1 : 2;
+    Bench<float>::stagesOf(walk.isa).extendInstances(context, wave);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_EQ(wave.hits.primitive[i], 0u) << toString(walk.isa) << " ray " << i;
+      const Double3 &o = rays[i].origin, &d = rays[i].direction;
+      const double a = dot(d, d), b = dot(o, d), c = dot(o, o) - kWorldRadius * kWorldRadius;
+      const double distance = (-b - std::sqrt(b * b - a * c)) / a;
+      ASSERT_NEAR(static_cast<double>(wave.hits.u[i]), distance, 1e-4 * kWorldRadius) << toString(walk.isa);
+    }
+  }
+}
 
 TEST(Instances, blockWhatCopiesBlock) {
   const Scene scene = placedScene(allKindsOfPlaces(), false);
@@ -379,10 +427,16 @@ TEST(InstancingRule, keepsSpheresThatBecomeEllipsoids) {
   EXPECT_NE(refusalOf(scene, Instancing::expanded, Accel::automatic).find("scales it differently"), std::string::npos);
 }
 TEST(InstancingRule, refusesIntersectorsThatKnowNone) {
-  const Scene scene = placedScene(allKindsOfPlaces(), true);
+  const Scene round = placedScene(allKindsOfPlaces(), false);
+  Scene deformed = placedScene(allKindsOfPlaces(), true);
+  deformed.instances[3].source = {.file = "uneven.xml", .line = 7};  // the first that scales unevenly
   for (const Accel accel : {Accel::small, Accel::embree}) {
-    EXPECT_NE(refusalOf(scene, Instancing::automatic, accel).find("expected `--accel bvh`"), std::string::npos);
-    EXPECT_FALSE(keeps(placedScene(allKindsOfPlaces(), false), Instancing::automatic, accel));
+    EXPECT_FALSE(keeps(round, Instancing::automatic, accel));
+    EXPECT_NE(refusalOf(round, Instancing::kept, accel).find("`--instances expand`"), std::string::npos);
+    // Copies are no way out where a sphere becomes an ellipsoid.
+    const std::string refusal = refusalOf(deformed, Instancing::automatic, accel);
+    EXPECT_TRUE(refusal.starts_with("uneven.xml:7: ")) << refusal;
+    EXPECT_TRUE(refusal.ends_with("expected `--accel bvh`")) << refusal;
   }
 }
 

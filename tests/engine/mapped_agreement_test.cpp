@@ -225,7 +225,7 @@ TEST(MappedAgreement, bumpsAreThoseOfEveryScale) {
   const RgbImage expected = bumpyWall(1);
   const auto [least, most] = std::ranges::minmax(expected);
   EXPECT_GT(most - least, 0.02f) << "bumps are seen";
-  for (const double scale : {1e10, 1e-10}) {
+  for (const double scale : {1e10, 1e-7}) {
     const RgbImage image = bumpyWall(scale);
     for (size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(image[i], expected[i], 1e-4f) << scale << ", value " << i;
   }
