@@ -45,6 +45,12 @@ nlohmann::ordered_json toJson(const MemoryPlan& plan) {
 }  // namespace
 
 void warnOfLimits(ProgressKind kind, const RenderSettings& settings) {
+  // The longest path, of the scene: --max-depth is refused where it is more than the method can follow.
+  const uint32_t asked = settings.limits.maxDepth, used = withinDepthOfMethod(settings).limits.maxDepth;
+  if (used < asked && asked != kUnlimitedDepth) {
+    warn(kind, fmt::format("the scene's max_depth of {} is more than {} can follow; {} is used", asked,
+                           toString(settings.method), used));
+  }
   // The merge radius, relative to the scene's radius.
   if (!strategiesOf(settings.method).merge || !settings.radius) return;
   const double radius = *settings.radius;
@@ -130,11 +136,11 @@ void warnOfLosses(const RenderOptions& options, ProgressKind kind, const RenderS
     warn(kind, fmt::format("{} splats were too large for the film's sums", counters.saturatedSplats));
   }
   // A limit of depth that was asked for needs no warning. cutThroughput is in units of what a path begins with.
-  if (counters.cutPaths != 0 && settings.limits.maxDepth == kUnlimitedDepth) {
+  const uint32_t depth = withinDepthOfMethod(settings).limits.maxDepth;
+  if (counters.cutPaths != 0 && (depth < settings.limits.maxDepth || depth == kUnlimitedDepth)) {
     const double paths = static_cast<double>(statistics.paths + statistics.lightPaths);
-    warn(kind,
-         fmt::format("{} paths were cut after {} edges; they carried {:.2g} of what all began with", counters.cutPaths,
-                     withinDepthOfMethod(settings).limits.maxDepth, counters.cutThroughput / paths));
+    warn(kind, fmt::format("{} paths were cut after {} edges; they carried {:.2g} of what all began with",
+                           counters.cutPaths, depth, counters.cutThroughput / paths));
   }
 }
 

@@ -1,6 +1,9 @@
 #include "bench/campaign/merged_reference.h"
 
+#include <algorithm>
 #include <cassert>
+
+#include "kernels/scene_view.h"
 
 namespace wavecrest {
 
@@ -9,6 +12,7 @@ Reference mergedReference(const MergedParts& merged) {
   const FilmArea& area = merged.film->area();
   const nlohmann::ordered_json &render = merged.header.render, &stats = merged.header.notes.at("stats");
   const auto word = [&](const char* key) { return render.at(key).get<std::string>(); };
+  const auto depth = render.at("max_depth").get<uint32_t>();
   // Methods that do not merge have no radius.
   Reference reference{.mean = {.width = area.width, .height = area.height, .channels = 3, .pixels = merged.halves[0]},
                       .difference = {},
@@ -18,7 +22,7 @@ Reference mergedReference(const MergedParts& merged) {
                                .sampler = word("sampler"),
                                .precision = word("precision"),
                                .seed = render.at("seed").get<uint64_t>(),
-                               .maxDepth = stats.at("max_depth").get<uint32_t>(),  // as renderReference has it
+                               .maxDepth = std::min(depth, kMostEdges),  // as renderReference has it
                                .rouletteDepth = render.at("rr_depth").get<uint32_t>(),
                                .radius = render.value("radius", 0.0),
                                .radiusAlpha = render.value("radius_alpha", 0.0),

@@ -37,7 +37,7 @@ ReferenceInfo describe(const Scene& scene, const RenderSettings& settings, const
           .sampler = std::string(toString(settings.sampler)),
           .precision = std::string(kPrecisionNames[static_cast<size_t>(settings.precision)]),
           .seed = settings.seed,
-          .maxDepth = settings.limits.maxDepth,
+          .maxDepth = std::min(settings.limits.maxDepth, kMostEdges),  // which stands for no limit in files
           .rouletteDepth = settings.limits.rouletteDepth,
           .radius = merges ? settings.radius.value() : 0,
           .radiusAlpha = merges ? settings.radiusAlpha : 0,

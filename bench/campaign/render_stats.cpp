@@ -136,7 +136,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"seed", settings.seed},
       {"sampler", std::string(toString(statistics.sampler))},
       {"filter_mode", enumeratorName(kFilterModeNames, statistics.filterMode)},
-      {"max_depth", settings.limits.maxDepth},
+      {"max_depth", withinDepthOfMethod(settings).limits.maxDepth},
       {"rr_depth", settings.limits.rouletteDepth},
       {"width", scene.film.imageWidth()},
       {"height", scene.film.imageHeight()},

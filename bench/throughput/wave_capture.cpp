@@ -8,9 +8,9 @@ namespace wavecrest {
 
 template <class S>
 WaveCapture<S>::WaveCapture(const Scene& scene, const RenderSettings& settings)
-    : settings_(settings),
-      plan_(planRender<S>(scene, settings)),
-      survival_(survivalRule(settings, Walk::camera)),
+    : settings_(withinDepthOfMethod(settings)),
+      plan_(planRender<S>(scene, settings_)),
+      survival_(survivalRule(settings_, Walk::camera)),
       iterationBits_(plan_.pipeline.mostIterationBits(settings.waveSize)),
       pixels_(filmArea(scene.film).pixels) {
   plan_.needs.visibility = true;  // rays of one intersector are traced by others too

@@ -17,11 +17,11 @@
 
 namespace wavecrest {
 
-// Edges of the longest path where none is stated. Light vertices keep their depth in a few bits, chains memory for each
-// vertex; what the limit cuts is counted (StageCounters::cutPaths), but mmlt and pathspace leave longer paths out
-// uncounted. A method without either has none to speak of: four numbers of each vertex' random blocks still fit in 32
-// bits.
-constexpr uint32_t kUnlimitedDepth = kMostEdges, kChainDepth = 64, kWalkDepth = 1u << 24;
+// Edges of the longest path where none is stated: more than paths have, and four numbers of each vertex' random blocks
+// still fit in 32 bits. Light vertices keep their depth in a few bits (kMostEdges), chains memory for each vertex
+// (kChainDepth). What a limit cuts is counted (StageCounters::cutPaths), but mmlt and pathspace leave longer paths out
+// uncounted.
+constexpr uint32_t kUnlimitedDepth = 1u << 24, kChainDepth = 64;
 
 // Markov chains. Their number is a setting, not a consequence of threads or waves, so that images depend on neither.
 struct MetropolisSettings {
@@ -227,8 +227,11 @@ inline bool tracesCameraPathsAlone(Method method) {
 // The settings with the longest path that their method can make, where they ask for longer ones.
 inline RenderSettings withinDepthOfMethod(RenderSettings settings) {
   uint32_t& depth = settings.limits.maxDepth;
-  if (settings.method == Method::mlt) depth = std::min(depth, kChainDepth);
-  if (tracesCameraPathsAlone(settings.method) && depth == kUnlimitedDepth) depth = kWalkDepth;
+  if (settings.method == Method::mlt) {
+    depth = std::min(depth, kChainDepth);
+  } else if (!tracesCameraPathsAlone(settings.method)) {
+    depth = std::min(depth, kMostEdges);
+  }
   return settings;
 }
 

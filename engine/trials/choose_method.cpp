@@ -104,7 +104,8 @@ RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings,
   trial.film->filter = ReconstructionFilter::box;
   trial.film->filterRadius = FilmSettings().filterRadius;
   if (strategiesOf(method).merge) {
-    // As many pixels as on a usual film, so that searches see as many photons as there.
+    // As many pixels as on a usual film, so that searches see as many photons as there. Under a crop these are as few
+    // as in the render, which has a light path for each pixel of the crop and the radius of the whole film.
     const double usualScale = std::sqrt(kUsualFilm / (static_cast<double>(film.width) * film.height));
     const RenderSettings usual = onScaledFilm(own, film, usualScale);
     const RenderPlan<S> plan = finishedPlan<S>(scene, usual, filmArea(*usual.film), compiled);

@@ -1,5 +1,7 @@
 #include "engine/walks/run_walk.h"
 
+#include <algorithm>
+
 #include "engine/tasks/ticks.h"
 #include "engine/walks/stage_contracts.h"
 #include "engine/walks/stage_observer.h"
@@ -65,6 +67,18 @@ void runDepth(const std::vector<StageCall<S>>& stages, StageContext<S>& context,
   }
 }
 
+// Ends the paths of a light walk at their last vertices, and counts them as `arrive` counts those of camera walks.
+template <class S>
+void cutPaths(Wave<S>& wave, StageCounters& counters) {
+  const auto& paths = wave.paths;
+  counters.cutPaths += paths.size;
+  for (size_t i = 0; i < paths.size; ++i) {
+    const S throughput = std::max({paths.throughputR[i], paths.throughputG[i], paths.throughputB[i]});
+    counters.cutThroughput += static_cast<double>(throughput * paths.rouletteScale[i]);
+  }
+  wave.setVertices(0, 0);
+}
+
 }  // namespace
 
 template <class S>
@@ -91,8 +105,11 @@ void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, Stage
   // Rows of the tally follow each other: generate, stages of depth 1, stages of all other depths, the drain.
   StageTally* const first = tally == nullptr ? nullptr : tally + 1;
   StageTally* const rest = tally == nullptr ? nullptr : first + pass.firstDepth.size();
-  // Go depth by depth until no path is left.
-  for (context.depth = 1; context.depth <= context.limits.maxDepth && wave.rays.size != 0; ++context.depth) {
+  // Go depth by depth until no path is left. A light vertex is joined by one edge at least, so the last of K edges is
+  // no light walk's.
+  const bool light = pass.walk == Walk::light;
+  const uint32_t last = context.limits.maxDepth - (light ? 1 : 0);
+  for (context.depth = 1; context.depth <= last && wave.rays.size != 0; ++context.depth) {
     // Each live path may leave one light vertex.
     if (pass.stores) context.light.store->beginDepth(wave.rays.size);
     if (context.depth == 1 && !pass.firstDepth.empty()) {
@@ -104,6 +121,7 @@ void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, Stage
     if (pass.splats && wave.splats.capacity() - wave.splats.size < wave.rays.size) drainSplats();
   }
   if (pass.splats) drainSplats();
+  if (light && wave.rays.size != 0) cutPaths(wave, *context.counters);
 }
 template void runPass(const Pass<float>&, StageContext<float>&, Wave<float>&, StageTally*, const SplatDrain<float>&);
 template void runPass(const Pass<double>&, StageContext<double>&, Wave<double>&, StageTally*,

@@ -66,7 +66,7 @@ WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& cont
                        (column.weight * row.weight);
     const Vec3<Real> contribution =
         loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * bsdf.f * scale;
-    const Mask lit = active & onFilm & (wiCosine > Real(0)) & (maxComponent(contribution) > Real(0));
+    const Mask lit = active & onFilm & (wiCosine > Real(0)) & (maxComponent(abs(contribution)) > Real(0));
     if (none(lit)) continue;
 
     const Vec3<Real> origin = offsetOrigin(shading.position, shading.normal, shading.offset, view.direction);

@@ -151,11 +151,12 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
 
   // Points closer than the offsets that keep their segment off the surfaces cannot be told apart.
   const Real apart = Real(4) * (z.offset + y.offset);
-  const Mask carries = active & (maxComponent(contribution) > Real(0)), tooClose = carries & (dist2 <= apart * apart);
+  const Real carried = maxComponent(abs(contribution));
+  const Mask carries = active & (carried > Real(0)), tooClose = carries & (dist2 <= apart * apart);
   if (any(tooClose)) context.counters->closePairs += countTrue(tooClose);
   Mask lit = andNot(carries, tooClose);
   if (context.light.rouletteBelow > 0) {
-    const Real chance = rouletteChance(maxComponent(contribution), Real(context.light.rouletteBelow));
+    const Real chance = rouletteChance(carried, Real(context.light.rouletteBelow));
     if (any(lit & (chance < Real(1)))) {
       const UInt light = load(pairs.light, i);
       lit = lit & (to<Real>(rouletteNumbers(context, wave, load(lanes), light)) < chance);

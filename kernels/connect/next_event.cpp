@@ -53,7 +53,8 @@ WAVECREST_NOINLINE size_t sampleLights(const StageContext<typename P::Storage>& 
     const Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     const Vec3<Real> contribution = throughput * bsdf.f * sample.radiance * scale;
 
-    const Mask lit = active & sample.valid & (maxComponent(contribution) > Real(0));
+    // Colours outside of Rec. 709 have negative channels.
+    const Mask lit = active & sample.valid & (maxComponent(abs(contribution)) > Real(0));
     if (none(lit)) continue;
     const Vec3<Real> origin = offsetOrigin(shading.position, shading.normal, shading.offset, sample.direction);
     appendShadowRays(shadow, lit, origin, sample.end, contribution, lane, out);

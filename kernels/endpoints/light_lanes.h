@@ -42,7 +42,7 @@ WAVECREST_INLINE auto loadLight(const SceneView<S>& scene, UInt index) {
 // ---- environment map ------------------------------------------------------------------------------------------------
 
 // Longitude and colatitude of unit directions in the map's frame, as fractions of the map (Mitsuba's convention: +y up,
-// -z in the middle of the left and right edge's seam turned by half).
+// +z in the middle, -z on the seam of the left and right edges).
 template <class Real>
 struct MapPoint {
   Float u, v;
@@ -131,16 +131,17 @@ WAVECREST_INLINE Vec3<Real> sampleTexels(const EnvironmentView& map, const Unifo
   return {column3(0), column3(1), column3(2)};
 }
 
-// The same, or towards the sun. What the choice leaves of its number is used again.
+// The same, or towards the sun. The place within the texel chooses, and what that leaves of it is used again: the other
+// numbers choose among texels as they do without a sun.
 template <class Real>
 WAVECREST_INLINE Vec3<Real> sampleMap(const EnvironmentView& map, const Uniform4& u) {
   if (!(map.sunShare > 0)) return sampleTexels<Real>(map, u);
   const Float share(map.sunShare);
-  const Mask toSun = u.a < share;
-  const Float rest = select(toSun, u.a / share, min((u.a - share) / (Float(1) - share), Float(0x1.fffffep-1f)));
-  const Vec3<Real> local = uniformCone(to<Real>(rest), to<Real>(u.b), Real(map.sunChord2 / 2));
+  const Mask toSun = u.d < share;
+  const Float rest = min(max((u.d - share) / (Float(1) - share), Float(0)), Float(0x1.fffffep-1f));
+  const Vec3<Real> local = uniformCone(to<Real>(u.a), to<Real>(u.b), Real(map.sunChord2 / 2));
   const Vec3<Real> sun = Frame<Real>::fromNormal(broadcast<Real>(map.sunDirection)).toWorld(local);
-  return select(toSun, sun, sampleTexels<Real>(map, {rest, u.b, u.c, u.d}));
+  return select(toSun, sun, sampleTexels<Real>(map, {u.a, u.b, u.c, rest}));
 }
 
 // ---- beams: spot lights and projectors ------------------------------------------------------------------------------

@@ -306,7 +306,9 @@ class Merger {
     }
     const Real scale = Real(context_.mis.mergeNorm) * weight * bsdf.lightCosine * inverseOfStop<kBsdfs>(active, i);
     const Vec3<Real> contribution = row.throughput * bsdf.f * (vec3(carried) * perCosine) * scale;
-    addRadiance(wave_.radiance, load(lanes), accepted, contribution);
+    // Where f and the densities are 0 an infinite sum makes the weight NaN.
+    const Mask carries = accepted & (maxComponent(abs(contribution)) > Real(0));
+    addRadiance(wave_.radiance, load(lanes), carries, contribution);
   }
 
   // Both walks have stopped at a surface that lets light through, each with its probability, where the light that the

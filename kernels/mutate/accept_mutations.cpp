@@ -17,14 +17,14 @@ struct Contribution {
   Float target;
 };
 
-// Contributions that are no finite numbers count as dark.
+// Contributions that are no finite numbers, and those of negative luminance, count as dark.
 template <class S>
 WAVECREST_INLINE Contribution proposedContribution(const Wave<S>& wave, const Chains& chains, Mask active, size_t i,
                                                    ChainCounters& counters) {
   const Vec3<Float> value =
       to<Float>(loadVec3(wave.radiance.red, wave.radiance.green, wave.radiance.blue, i)) * load(chains.scale, i);
   const Float luminance = luminanceOf(value);
-  const Mask finite = (luminance >= Float(0)) & (luminance < Float(1e37f));
+  const Mask finite = abs(luminance) < Float(1e37f);
   counters.nonFinite += countTrue(andNot(active, finite));
   // Below that the reciprocal is no number either.
   const Mask lit = active & finite & (luminance > Float(1e-37f));

@@ -12,7 +12,8 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// The light that a walk from the lens was to meet: its radiance is what arrive has added.
+// The light that a walk from the lens was to meet: its radiance is what arrive has added. A light that is not black has
+// a positive channel; chains drop paths whose luminance is negative (weighPaths).
 template <class S>
 WAVECREST_INLINE void takeEmission(Wave<S>& wave, const PathHeaders<S>& headers, Mask m, UInt lane) {
   const auto radiance = gatherVec3(wave.radiance.red, wave.radiance.green, wave.radiance.blue, lane);

@@ -49,9 +49,9 @@ inline WAVECREST_NOINLINE Uniform4 dependentUniform4(const SamplerSettings& samp
     const auto unit = [](UInt number) WAVECREST_LAMBDA { return toFloat(number) * Float(0x1p-24f); };
     return {unit(numbers.a), unit(numbers.b), unit(numbers.c), unit(numbers.d)};
   }
-  if (block / 4 >= sampler.sobolVertices(stream)) return independentUniform4(sampler, path, block, stream);
-  const bool shared = stream == Stream::light && sampler.lightPaths != 0;
-  const SobolPoint bits = shared ? sharedSobolBits(sampler, path, block) : sobolBits(sampler, path, block, stream);
+  if (block / 4 >= sobolVertices(stream)) return independentUniform4(sampler, path, block, stream);
+  const SobolPoint bits =
+      stream == Stream::light ? sharedSobolBits(sampler, path, block) : sobolBits(sampler, path, block, stream);
   return {toUnitInterval(bits.a), toUnitInterval(bits.b), toUnitInterval(bits.c), toUnitInterval(bits.d)};
 }
 

@@ -23,9 +23,8 @@ constexpr uint32_t kMostPaths = 1u << kPathBits;
 constexpr uint32_t kIterationsPerWave = 1u << (32 - kPathBits);
 
 // independent: every number is independent of every other.
-// sobol: the numbers of one (path, block) are well distributed over the iterations. Where light paths serve all pixels,
-//   they are points of one sequence: the numbers of one block are then well distributed over paths and iterations
-//   together.
+// sobol: the numbers of one (path, block) are well distributed over the iterations. Light paths serve all pixels, so
+//   they are points of one sequence: the numbers of one block are well distributed over paths and iterations together.
 // chain: what Markov chains propose (ChainSamples); no choice of the user's, but part of Metropolis light transport.
 enum class SamplerKind { independent, sobol, chain };
 
@@ -52,7 +51,7 @@ enum class Block : uint32_t {
                 // of a caustic perturbation: angle
   opacity = 2,  // (a) which surfaces the edge to the vertex passes; (d) roulette of connections; of a multiplexed
                 // camera path's origin: strategy
-  environment = 3  // texel of the environment map (2), place within (2)
+  environment = 3  // texel of the environment map (2), place within (2), of which the last also chooses sun or sky
 };
 
 // Which blocks of a walk's origin and of its other vertices a chain keeps: bit b stands for block b of the vertex.
@@ -110,16 +109,13 @@ struct SamplerSettings {
   uint64_t seed = 0;
   uint64_t iteration = 0;               // if lanes are ahead of it, a multiple of the number of iterations in the wave
   const ChainSamples* chain = nullptr;  // of kind `chain`
-  // Of kind `sobol`: light paths of an iteration, of which all are points of one sequence, one after the other; 0: each
-  // light path is a sequence of its own over the iterations. An iteration has no path beyond them.
+  // Of kind `sobol`, for stream `light`: light paths of an iteration, which has no path beyond them. All are points of
+  // one sequence, one after the other.
   uint64_t lightPaths = 0;
-
-  // How many vertices of a walk have numbers of kind `sobol`, its origin included. Where a path is after them depends
-  // on all numbers before: well distributed ones are worth no more there, and independent ones are cheaper.
-  uint32_t sobolVertices(Stream stream) const {
-    if (stream != Stream::light) return 3;
-    return lightPaths == 0 ? 2 : 1;
-  }
 };
+
+// How many vertices of a walk have numbers of kind `sobol`, its origin included. Where a path is after them depends on
+// all numbers before: well distributed ones are worth no more there, and independent ones are cheaper.
+constexpr uint32_t sobolVertices(Stream stream) { return stream == Stream::light ? 1 : 3; }
 
 }  // namespace wavecrest

@@ -1,6 +1,6 @@
 // Owen-scrambled Sobol points: the four numbers of one (path, block, stream) are a four-dimensional Sobol sequence over
-// the iterations, shuffled and scrambled independently of every other; or the four numbers of one (block, stream) are
-// one over all light paths of all iterations, one after the other.
+// the iterations, shuffled and scrambled independently of every other. Of light paths the four numbers of one block are
+// one over all paths of all iterations, one after the other.
 //
 // Burley, "Practical Hash-based Owen Scrambling", JCGT 2020: higher dimensions are padded with further such sets, whose
 // order is decorrelated by scrambling the index too. The seeds of the scrambles are random bits of Philox, so no two
@@ -8,6 +8,8 @@
 // functions of one pair, but at 4096 points 50 times more accurate on a smooth function of all four numbers, and no
 // dimension table has to say which numbers belong together.
 #pragma once
+
+#include <cassert>
 
 #include "kernels/sampling/philox_lanes.h"
 #include "kernels/sampling/sampler.h"
@@ -84,6 +86,7 @@ WAVECREST_INLINE SobolPoint sobolBits(const SamplerSettings& sampler, UInt path,
 
 // The set of all light paths of as many whole iterations as its points are enough for.
 WAVECREST_INLINE SobolPoint sharedSobolBits(const SamplerSettings& sampler, UInt path, uint32_t block) {
+  assert(sampler.lightPaths != 0);
   const uint64_t together = kMostPaths / sampler.lightPaths, epoch = sampler.iteration / together;
   const auto first = static_cast<uint32_t>(sampler.iteration % together * sampler.lightPaths);
   // No path with a set of its own has this number.

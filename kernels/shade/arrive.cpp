@@ -77,6 +77,9 @@ WAVECREST_INLINE void addInfiniteLight(const StageContext<typename P::Storage>& 
       pdfW = mapPdfW(scene.environment, point);
     }
   }
+  // Where there is no light its density may be 0, which an infinite sum turns into NaN.
+  missed = missed & (maxComponent(abs(radiance)) > Real(0));
+  if (none(missed)) return;
   if (!alone) {
     const Real pick(light.pick);
     Real wCamera(0);
@@ -107,6 +110,9 @@ WAVECREST_INLINE void addEmission(const StageContext<typename P::Storage>& conte
     const Float u = to<Float>(surface.u), v = to<Float>(surface.v);
     radiance = radiance * to<Real>(textureFactor(scene.textures, scene.texels, light.texture, u, v));
   }
+  // Lights without radiance are never picked: a density of 0, which an infinite sum turns into NaN.
+  emits = emits & (maxComponent(abs(radiance)) > Real(0));
+  if (none(emits)) return;
   if (!alone) {
     const Vec3<Real> receiver = loadVec3(rays.originX, rays.originY, rays.originZ, i);
     Real wCamera(0);

@@ -54,7 +54,8 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
 
     const Vec3<Real> arriving = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     Vec3<Real> throughput = arriving * sample.weight;
-    Mask alive = active & (maxComponent(throughput) > Real(0)) & (sample.pdf > Real(0));
+    // Light outside of Rec. 709 has negative channels.
+    Mask alive = active & (maxComponent(abs(throughput)) > Real(0)) & (sample.pdf > Real(0));
     if (lobes == Lobes::specularOnly) alive = alive & sample.specular;
     if constexpr (has(kFeatures, kBidirectional) && has(kFeatures, kShadingNormals | kTextures)) {
       if (context.walk == Walk::light) {  // METHODS 3.9: the non-symmetry of interpolated normals (Veach 1997, 5.3)
@@ -69,8 +70,8 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
       if (context.walk == Walk::camera) rouletteScale = rouletteScale / (sample.etaRatio * sample.etaRatio);
     }
     if (roulette) {
-      const Real carried = maxComponent(throughput) * rouletteScale;
-      Real before = maxComponent(arriving) * scaleBefore;
+      const Real carried = maxComponent(abs(throughput)) * rouletteScale;
+      Real before = maxComponent(abs(arriving)) * scaleBefore;
       if (context.learned.guide != nullptr) before = carried * reciprocal(max(measure, Real(1e-12f)));
       const Real q = survival(context.survival, carried, before);
       alive = alive & (to<Real>(u.d) < q);

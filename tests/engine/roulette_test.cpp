@@ -135,6 +135,44 @@ TEST(MaxDepth, oneShowsOnlyEmitters) {
   EXPECT_EQ(session->statistics().counters.raysClosest, 4u * kRoomWidth * kRoomHeight);
 }
 
+// What is stated holds, as far as light vertices and chains have room for it.
+TEST(MaxDepth, isTheStatedOneWithinTheRoomOfTheMethod) {
+  const auto depthOf = [](Method method, int stated) {
+    RenderSettings settings;
+    settings.method = method;
+    settings.limits = pathLimits(stated, 5);
+    return withinDepthOfMethod(settings).limits.maxDepth;
+  };
+  for (const Method method : {Method::pt, Method::gpt}) {
+    EXPECT_EQ(depthOf(method, 4095), 4095u) << toString(method);
+    EXPECT_EQ(depthOf(method, 5000), 5000u) << toString(method);
+    EXPECT_EQ(depthOf(method, -1), 1u << 24) << toString(method);
+  }
+  for (const Method method : {Method::lt, Method::bpt, Method::vcm, Method::evcm}) {
+    EXPECT_EQ(depthOf(method, 12), 12u) << toString(method);
+    EXPECT_EQ(depthOf(method, 5000), 4095u) << toString(method);
+    EXPECT_EQ(depthOf(method, -1), 4095u) << toString(method);
+  }
+  EXPECT_EQ(depthOf(Method::mlt, 12), 12u);
+  EXPECT_EQ(depthOf(Method::mlt, 100), 64u);
+  EXPECT_EQ(depthOf(Method::mlt, -1), 64u);
+}
+
+// A light vertex is joined by one edge at least: of K edges the light walk has K - 1. What the limit ends is counted.
+TEST(MaxDepth, lightWalksHaveAnEdgeLess) {
+  const Scene scene = sceneFile("validation/closed-box", kRoomWidth, kRoomHeight);
+  for (const Method method : {Method::lt, Method::bpt, Method::vcm}) {
+    RenderSettings settings = defaults();
+    settings.method = method;
+    settings.limits.maxDepth = 1;
+    const auto session = Session::create(scene, settings);
+    session->renderUntil(2, std::nullopt);
+    const RenderStatistics statistics = session->statistics();
+    EXPECT_EQ(statistics.counters.raysClosest, statistics.paths) << toString(method);
+    EXPECT_EQ(statistics.counters.cutPaths, statistics.paths + statistics.lightPaths) << toString(method);
+  }
+}
+
 TEST(MaxDepth, eachEdgeMoreAddsLight) {
   const Scene scene = sceneFile("cornell-diffuse", kRoomWidth, kRoomHeight);
   RenderSettings settings = defaults();

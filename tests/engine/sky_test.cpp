@@ -56,7 +56,7 @@ Rgb texelAt(const EnvironmentView& map, const Double3& d) {
 TEST(Sky, IsBakedAsItsTransformTurnsIt) {
   const Double3 direction = normalized({0.3, 0.2, 0.9});
   const Environment plain = compileSky(sunskyOf({0.6, 0, 0.8}, kIdentity));
-  expectNear(texelAt(plain.view, direction), {0.102131, 0.131141, 0.192618}, 0.01);  // a texel is 0.35 degrees wide
+  expectNear(texelAt(plain.view, direction), {0.102131, 0.131141, 0.192618}, 0.01);  // texels: 0.7 x 0.09 degrees
   const Environment turned = compileSky(sunskyOf(transformVector(kUpIsY, {0.6, 0, 0.8}), kUpIsY));
   expectNear(texelAt(turned.view, transformVector(kUpIsY, direction)), {0.102131, 0.131141, 0.192618}, 0.01);
 }

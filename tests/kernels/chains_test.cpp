@@ -254,15 +254,16 @@ TEST_P(ChainTwin, takesTheSameStepsForAnyCount) {
   }
 }
 
-// A contribution that is no number is refused and counted, and the chain stays where it is.
-TEST_P(ChainTwin, refusesWhatIsNoNumber) {
+// A contribution that is no number, or of negative luminance, is refused and counted, and the chain stays where it is.
+TEST_P(ChainTwin, refusesWhatIsNoNumberOrNegative) {
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1.0f}) {
     bool broken = false;
     ToyChains chains(GetParam(), 21, [&](uint32_t) { return broken ? bad : 1.0f; });
     chains.step(0);
     broken = true;
     chains.step(1);
-    EXPECT_EQ(chains.state.counters.nonFinite, 21u);
+    EXPECT_EQ(chains.state.counters.nonFinite, bad < 0 ? 0u : 21u);
+    EXPECT_EQ(chains.state.counters.dark, bad < 0 ? 21u : 0u);
     EXPECT_EQ(chains.state.counters.longestRejection, 1u);
     for (size_t i = 0; i < 21; ++i) EXPECT_NEAR(chains.state.columns.target[i], 1, 1e-6);
   }

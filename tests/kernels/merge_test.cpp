@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <string>
@@ -141,6 +142,16 @@ struct Photons {
     }
   }
 
+  // Lets all photons come from behind their surfaces, by paths that infinitely many others compete with.
+  void comeFromBehind() {
+    for (const auto& store : stores) {
+      for (size_t i = 0; i < store->vertices.size; ++i) {
+        store->vertices.row[i].wi[2] = -1;
+        store->vertices.row[i].behind = std::numeric_limits<S>::infinity();
+      }
+    }
+  }
+
   // Material 0, one edge from the light.
   static S oneEdge() {
     if constexpr (std::is_same_v<S, float>) return std::bit_cast<float>(1u << kMaterialBits);
@@ -193,10 +204,11 @@ std::string nameOfMerge(const testing::TestParamInfo<MergeCase>& test) {
 class MergeTest : public testing::TestWithParam<MergeCase> {};
 INSTANTIATE_TEST_SUITE_P(Kernels, MergeTest, testing::ValuesIn(cases()), nameOfMerge);
 
-// Merges the photons at the cloud's vertices, into the wave's radiance; how many of them.
+// Merges the photons at the cloud's vertices, into the wave's radiance; how many of them. weights: against other
+// strategies.
 template <class S>
-uint64_t runMerge(const MergeCase& param, const Cloud<S>& cloud, const Photons<S>& found, double radius,
-                  Wave<S>& wave) {
+uint64_t runMerge(const MergeCase& param, const Cloud<S>& cloud, const Photons<S>& found, double radius, Wave<S>& wave,
+                  bool weights = false) {
   StageScene<S> scene({quadPrimitive({0, 0, 0}, {1, 0, 0}, {0, 1, 0})});
   MaterialRecord& material = scene.materials[0];
   std::fill_n(material.reflectance, 3, static_cast<float>(std::numbers::pi));  // f = 1
@@ -207,7 +219,7 @@ uint64_t runMerge(const MergeCase& param, const Cloud<S>& cloud, const Photons<S
   StageCounters counters;
   StageContext<S> context;
   context.scene = &scene.view;
-  context.mis = {.merge = true, .mergeWeights = false, .mergeNorm = 1, .radius = radius};
+  context.mis = {.merge = true, .mergeWeights = weights, .mergeNorm = 1, .radius = radius};
   context.depth = 1;
   context.light.photons = &found.map;
   context.counters = &counters;
@@ -333,6 +345,24 @@ TEST_P(MergeTest, leavesOutPhotonsThatFaceElsewhere) {
     expectNormalThreshold<double>(GetParam());
   } else {
     expectNormalThreshold<float>(GetParam());
+  }
+}
+
+// There f and its density are 0. With the photon's infinite sum the weight is no number.
+template <class S>
+void expectNothingFromBehind(const MergeCase& param) {
+  const Cloud<S> cloud(8, 1e-2);
+  Photons<S> found(cloud.photons, PhotonGrid<S>::over(kCenter, kSceneRadius, 1e-2, 1e3));
+  found.comeFromBehind();
+  Wave<S> wave(cloud.vertices.size(), ColumnNeeds{});
+  EXPECT_GT(runMerge(param, cloud, found, 1e-2, wave, true), 0u);
+  for (size_t i = 0; i < cloud.vertices.size(); ++i) EXPECT_EQ(wave.radiance.red[i], S(0)) << "vertex " << i;
+}
+TEST_P(MergeTest, addsNothingOfPhotonsFromBehindWhateverTheirSums) {
+  if (GetParam().precision == Precision::doubled) {
+    expectNothingFromBehind<double>(GetParam());
+  } else {
+    expectNothingFromBehind<float>(GetParam());
   }
 }
 

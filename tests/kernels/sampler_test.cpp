@@ -36,23 +36,23 @@ TEST_P(SamplerTest, philoxMatchesPublishedVectors) {
 TEST_P(SamplerTest, numbersDoNotDependOnTheInstructionSet) {
   struct Case {
     SamplerKind kind;
-    uint64_t lightPaths;
+    Stream stream;
     uint32_t block;
   };
-  for (const auto& [kind, lightPaths, block] :
-       {Case{SamplerKind::independent, 0, 9}, Case{SamplerKind::sobol, 0, 1}, Case{SamplerKind::sobol, 0, 9},
-        Case{SamplerKind::sobol, 5000, 1}, Case{SamplerKind::sobol, 5000, 9}}) {
+  for (const Case& drawn : {Case{SamplerKind::independent, Stream::light, 9},
+                            Case{SamplerKind::sobol, Stream::camera, 1}, Case{SamplerKind::sobol, Stream::camera, 13},
+                            Case{SamplerKind::sobol, Stream::light, 1}, Case{SamplerKind::sobol, Stream::light, 9}}) {
     const SamplerEntries& kernel = entries<SamplerEntries>();
-    SamplerSettings sampler = settings(kind, 77);
-    sampler.lightPaths = lightPaths;
-    const uint32_t drawn = block;
+    SamplerSettings sampler = settings(drawn.kind, 77);
+    sampler.lightPaths = 5000;
     forEachShape(kernel.lanes, [&](size_t count, size_t offset) {
       const size_t padded = (count + kernel.lanes - 1) / kernel.lanes * kernel.lanes;
       std::vector<GuardedColumn<float>> actual(4, GuardedColumn<float>(count, padded, offset));
       std::vector<GuardedColumn<float>> expected(4, GuardedColumn<float>(count));
       const auto draw = [&](const SamplerEntries& from, std::vector<GuardedColumn<float>>& to) {
         sampler.iteration = count;
-        from.fill(sampler, 1000, drawn, Stream::light, count, {to[0].data(), to[1].data(), to[2].data(), to[3].data()});
+        from.fill(sampler, 1000, drawn.block, drawn.stream, count,
+                  {to[0].data(), to[1].data(), to[2].data(), to[3].data()});
       };
       draw(kernel, actual);
       draw(twin<SamplerEntries>(), expected);
@@ -79,10 +79,10 @@ TEST_P(SamplerTest, numbersDoNotDependOnTheNeighbours) {
 TEST_P(SamplerTest, iterationsHaveNumbersOfTheirOwnHoweverMany) {
   constexpr size_t kPaths = 32;
   for (const SamplerKind kind : kAllSamplerKinds) {
-    const SampleColumns first = drawPaths(settings(kind, 7, 5), kPaths, 3, Stream::light, 0, GetParam());
+    const SampleColumns first = drawPaths(settings(kind, 7, 5), kPaths, 3, Stream::camera, 0, GetParam());
     for (uint32_t bit = 4; bit < 56; ++bit) {
       const SampleColumns other =
-          drawPaths(settings(kind, 7, 5 + (uint64_t{1} << bit)), kPaths, 3, Stream::light, 0, GetParam());
+          drawPaths(settings(kind, 7, 5 + (uint64_t{1} << bit)), kPaths, 3, Stream::camera, 0, GetParam());
       size_t equal = 0;
       for (size_t d = 0; d < 4; ++d) {
         for (size_t i = 0; i < kPaths; ++i) equal += first[d][i] == other[d][i];
@@ -165,7 +165,8 @@ TEST_P(SamplerStatistics, neighbouringPathsAreIndependent) {
 
 // Everything that names a set of numbers makes it independent of the other sets.
 TEST_P(SamplerStatistics, blocksStreamsAndSeedsAreIndependent) {
-  const SamplerSettings base = settings(GetParam(), 1);
+  SamplerSettings base = settings(GetParam(), 1);
+  base.lightPaths = kSamples;
   const SampleColumns u = drawPaths(base, kSamples);
   const SampleColumns others[] = {
       drawPaths(base, kSamples, 1),

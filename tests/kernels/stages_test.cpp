@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "kernels/columns/survival.h"
 #include "tests/kernels/stage_room.h"
@@ -218,6 +220,65 @@ TEST(Roulette, scaleUndoesTheCompressionOfRadiance) {
       EXPECT_NEAR(wave.paths.throughputR[i] * wave.paths.rouletteScale[i], passes ? 0.95f : 0.9f, 1e-5f);
     }
     EXPECT_GT(refracted, 2u) << toString(isa);
+  }
+}
+
+// Lights without radiance are picked with probability 0. Where a path's sums of densities are infinite, the product of
+// the two is no number, which must not get into the pixel's other light.
+template <class S>
+void expectNothingOfBlackLights(const Choice& choice) {
+  constexpr uint32_t kLamp = 0, kGlowing = 1, kSky = 3;
+  StageScene<S> scene =
+      makeRoom<S>(covers(choice.specialization, kCurvedShapes), false, covers(choice.specialization, kNormalMaps));
+  for (const uint32_t black : {kGlowing, kSky}) {
+    std::fill_n(scene.lights[black].radiance, 3, S(0));
+    scene.lights[black].pick = 0;
+  }
+  const Stages<S>& stages = findStages<S>(choice.isa, choice.precision, choice.specialization);
+  const ColumnNeeds needs = columnNeedsOf(choice.specialization);
+  Wave<S> wave(kPaths, needs);
+  StageCounters counters;
+  StageContext<S> context;
+  context.scene = &scene.view;
+  context.pixels = scene.pixels.data();
+  context.limits = kLimits;
+  context.counters = &counters;
+  wave.pathCount = kPaths;
+  stages.generateCameraPaths(context, wave);
+  context.depth = 1;
+  stages.extendSmall(context, wave);
+  // The first rays stand for second ones, which have weights, and some of them leave the room.
+  context.depth = 2;
+  std::vector<uint32_t> lights(kPaths);  // that the paths meet
+  for (size_t i = 0; i < wave.paths.size; ++i) {
+    if (i % 5 == 0) wave.hits.primitive[i] = kMiss;
+    const uint32_t hit = wave.hits.primitive[i];
+    const uint32_t light = hit == kMiss ? kSky : scene.view.primitives[hit].light;
+    const S sum = light == kGlowing || light == kSky ? std::numeric_limits<S>::infinity() : S(0);
+    lights[wave.paths.lane[i]] = light;
+    wave.paths.dVCM[i] = sum;
+    if (needs.connections) wave.paths.dVC[i] = sum;
+  }
+  stages.arrive(context, wave);
+  size_t lamps = 0, glowing = 0;
+  for (size_t lane = 0; lane < kPaths; ++lane) {
+    const S red = wave.radiance.red[lane];
+    if (lights[lane] == kLamp) {
+      EXPECT_GT(red, S(0)) << "lane " << lane;
+    } else if (lights[lane] == kGlowing || lights[lane] == kSky) {
+      EXPECT_EQ(red, S(0)) << "lane " << lane;
+    }
+    lamps += lights[lane] == kLamp ? 1 : 0;
+    glowing += lights[lane] == kGlowing ? 1 : 0;
+  }
+  EXPECT_GT(lamps, 2u);
+  EXPECT_GT(glowing, 2u);
+}
+TEST_P(StageTest, addsNothingOfBlackLightsWhateverTheSums) {
+  if (GetParam().precision == Precision::doubled) {
+    expectNothingOfBlackLights<double>(GetParam());
+  } else {
+    expectNothingOfBlackLights<float>(GetParam());
   }
 }
 
