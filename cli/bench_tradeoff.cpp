@@ -26,26 +26,48 @@ Scene tradeScene(const BenchOptions& options, const std::filesystem::path& file)
   return loadScene(file, loading);
 }
 
+// The settings that are varied.
+RenderSettings tradeSettings(const BenchOptions& options, const Scene& scene, Method method) {
+  RenderSettings settings = benchSettings(scene, options);
+  // CPU time of threads that share caches would blur the comparison.
+  if (options.threads == 0) settings.threads = 1;
+  settings.method = method;
+  return settings;
+}
+
+// Refuses a word of --knobs that names no setting of any method in any scene. Throws UsageError.
+void refuseUnknownKnobs(const BenchOptions& options, const std::vector<Scene>& scenes,
+                        const std::vector<Method>& methods) {
+  std::vector<std::string> unknown = options.knobs;
+  for (const Scene& scene : scenes) {
+    for (const Method method : methods) {
+      if (unknown.empty()) return;
+      const std::vector<Variant> variants = variantsOf(scene, tradeSettings(options, scene, method));
+      std::erase_if(unknown, [&](const std::string& word) { return hasKnob(variants, word); });
+    }
+  }
+  if (unknown.empty()) return;
+  throw UsageError(fmt::format(
+      "--knobs: '{}' is no setting that is varied here; expected words of the tradeoff table's first column",
+      unknown.front()));
+}
+
 }  // namespace
 
 int runBenchTradeoff(const BenchOptions& options) {
   const std::vector<Method> methods = parseMethodList(options.methods);
   TradeEffort effort{.seconds = benchSeconds(options, kTradeSeconds), .knobs = options.knobs};
   if (options.seeds != 0) effort.seeds = options.seeds;
+  // Loads all scenes and checks all words before anything is measured.
+  std::vector<Scene> scenes;
+  for (const std::filesystem::path& file : benchSceneFiles(options)) scenes.push_back(tradeScene(options, file));
+  refuseUnknownKnobs(options, scenes, methods);
+  // Measures each method in each scene.
   std::vector<TradeResult> results;
   nlohmann::ordered_json all = {{"results", nlohmann::ordered_json::array()}};
-  for (const std::filesystem::path& file : benchSceneFiles(options)) {
-    const Scene scene = tradeScene(options, file);
+  for (const Scene& scene : scenes) {
     for (const Method method : methods) {
-      RenderSettings settings = benchSettings(scene, options);
-      // CPU time of threads that share caches would blur the comparison.
-      if (options.threads == 0) settings.threads = 1;
-      settings.method = method;
-      try {
-        results.push_back(measureTrade(scene, settings, effort));
-      } catch (const std::invalid_argument& error) {
-        throw UsageError(fmt::format("--knobs: {}; expected words of the tradeoff table's first column", error.what()));
-      }
+      results.push_back(measureTrade(scene, tradeSettings(options, scene, method), effort));
       printBench(options, toText(results.back()) + "\n");
       all["results"].push_back(toJson(results.back()));
     }

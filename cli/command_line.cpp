@@ -161,7 +161,12 @@ bool Command::fromVariable(const std::string& name) const {
   const CLI::Option* const option = app_->get_option(name);
   const std::string variable = option->get_envname();
   const char* const value = variable.empty() ? nullptr : std::getenv(variable.c_str());
-  return value != nullptr && option->results() == std::vector<std::string>{value};
+  if (value == nullptr || option->results().size() != 1) return false;
+  // Of a number, the option has the word as checkNumber has rewritten it.
+  std::string number = value;
+  checkNumber(rangeOf<uint64_t>(), number);
+  const std::string& word = option->results().front();
+  return word == value || word == number;
 }
 void Command::run(std::function<void()> callback) const { app_->callback(std::move(callback)); }
 

@@ -1,6 +1,7 @@
 // wavecrest converge: a convergence campaign over scenes, methods and seeds.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +19,7 @@
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "library/campaign_options.h"
+#include "library/campaign_rows.h"
 #include "library/option_ranges.h"
 #include "library/option_values.h"
 
@@ -110,8 +112,12 @@ std::unique_ptr<CampaignView> openPage(const ConvergeOptions& options, const Cam
   return view;
 }
 
-// Variables are defaults of a new campaign: one that goes on has its own.
+// Variables are defaults, which rows that take no sampler ignore, and defaults of a new campaign: one that goes on has
+// its own.
 void forgetCampaignVariables(ConvergeOptions& options, const Command& command) {
+  if (command.fromVariable("--sampler") && std::ranges::none_of(campaignSettings(options).methods, takesSampler)) {
+    options.defining.erase("--sampler");
+  }
   if (!options.resume) return;
   ConvergeOptions without = options;
   for (const char* name : {"--size", "--precision", "--sampler"}) {

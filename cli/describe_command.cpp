@@ -43,9 +43,11 @@ std::vector<CompletionWords> completionWords() {
   std::vector<std::string_view> samplersOrAuto = samplers;
   samplersOrAuto.push_back("auto");
   for (const Metric& metric : metricList()) metrics.push_back(metric.name);
-  // A reference's method may also be chosen by the program.
+  // A reference's method may also be chosen by the program, but not by trials.
   std::vector<std::string_view> referenceMethods{"auto"};
-  referenceMethods.insert(referenceMethods.end(), methods.begin(), methods.end());
+  for (const MethodEntry& entry : kMethods) {
+    if (!isChosenByTrials(entry.method)) referenceMethods.push_back(entry.name);
+  }
   return {named({"--method", "--methods"}, methods),
           named({"--methods"}, campaignMethodNames(), "converge"),
           named({"--method"}, referenceMethods, "reference"),
@@ -61,7 +63,7 @@ std::vector<CompletionWords> completionWords() {
           named({"--instances"}, kInstancingNames),
           named({"--filter-mode"}, kFilterModeNames),
           named({"--roulette"}, kRouletteNames),
-          named({"--guide"}, kGuideTargetNames),
+          named({"--guide"}, kGuideTargetNames, "render"),
           named({"--mlt"}, kMetropolisVariantNames),
           named({"--merge-vertices"}, kMergeVerticesNames),
           named({"--clock"}, kClockNames),

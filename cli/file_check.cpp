@@ -62,6 +62,14 @@ void FileCheck::image(const std::string& role, const fs::path& file) {
   output(role, file);
 }
 
+void FileCheck::reference(const std::string& role, const fs::path& file) {
+  if (file.extension() != ".exr") {
+    throw UsageError(
+        fmt::format("{} {}: expected a name that ends in .exr, which keeps the halves", role, file.string()));
+  }
+  output(role, file);
+}
+
 bool readerHasLeft() {
   pollfd out{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
   return poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0;

@@ -19,6 +19,8 @@ class FileCheck {
   void output(const std::string& role, const std::filesystem::path& file);
   // An output whose format, that of its name's ending, must be one that images are written in.
   void image(const std::string& role, const std::filesystem::path& file);
+  // An output that keeps the halves of a reference, in layers that only EXR has.
+  void reference(const std::string& role, const std::filesystem::path& file);
   // A file that is to be written, among others of its kind, in a folder that has been checked.
   void laterOutput(const std::string& role, const std::filesystem::path& file);
 

@@ -30,7 +30,7 @@ void checkFiles(const MergeOptions& options) {
   for (const std::string& image : options.outputs) files.image("-o", image);
   if (options.checkpoint == kStandardStream) throw UsageError("--checkpoint -: expected a file");
   if (!options.checkpoint.empty()) files.output("--checkpoint", options.checkpoint);
-  if (!options.reference.empty()) files.output("--reference", options.reference);
+  if (!options.reference.empty()) files.reference("--reference", options.reference);
   if (!options.stats.empty()) files.output("--stats", options.stats);
 }
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 #include "bench/json_text.h"
@@ -25,6 +26,7 @@ ProgressKind resolved(ProgressKind kind) {
 struct NoteList {
   std::mutex mutex;
   std::vector<std::string> notes;
+  std::set<std::string> known;
 };
 NoteList& noteList() {
   static NoteList list;
@@ -34,7 +36,7 @@ NoteList& noteList() {
 void keepNote(const std::string& text) {
   NoteList& list = noteList();
   const std::lock_guard<std::mutex> lock(list.mutex);
-  if (std::find(list.notes.begin(), list.notes.end(), text) == list.notes.end()) list.notes.push_back(text);
+  if (list.known.insert(text).second) list.notes.push_back(text);
 }
 
 // The kind of progress by which notes are said where there is no progress.

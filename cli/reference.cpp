@@ -80,7 +80,11 @@ class AdvanceLine {
 // The method that was named, or the one that suits the scene's path classes (METHODS 8.3).
 ReferenceChoice chosenMethod(const ReferenceOptions& options, const Scene& scene) {
   if (options.method == "auto") return classifyPaths(scene).reference;
-  return {.method = parseMethodOption("--method", options.method), .biased = false, .reason = "asked for"};
+  const Method method = parseMethodOption("--method", options.method);
+  if (isChosenByTrials(method)) {
+    throw UsageError(fmt::format("--method {}: trials choose another method; expected that method", options.method));
+  }
+  return {.method = method, .biased = false, .reason = "asked for"};
 }
 
 // Settings of both halves. settings.seed becomes a seed for each of them (referenceSeed).
@@ -94,8 +98,8 @@ RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, 
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   if (options.radius != kReferenceRadius && !mergesPaths(method)) {
-    throw UsageError(
-        fmt::format("--radius: {} does not merge; expected {}", toString(method), methodsWith(mergesPaths)));
+    const auto has = [](Method one) { return mergesPaths(one) && !isChosenByTrials(one); };
+    throw UsageError(fmt::format("--radius: {} does not merge; expected {}", toString(method), methodsWith(has)));
   }
   settings.radius = options.radius;
   settings.roulette = Roulette::efficiency;  // another roulette has the same limit, so any reference can go on
@@ -149,23 +153,14 @@ void showReference(const std::string& output, const Reference& reference, Progre
   }
 }
 
-// Only EXR has layers for the difference of the halves.
-void requireExr(std::string_view option, const std::filesystem::path& file) {
-  if (file.extension() == ".exr") return;
-  throw UsageError(
-      fmt::format("{} {}: expected a name that ends in .exr, which keeps the halves", option, file.string()));
-}
-
 int runReference(const ReferenceOptions& options) {
   // Checks options and file names before anything takes time.
   const std::filesystem::path scenePath = findScene(options.scene.scene);
   const std::string output = options.output.empty() ? stemOf(options.scene) + ".reference.exr" : options.output;
-  requireExr("-o", output);
-  if (!options.compact.empty()) requireExr("--compact", options.compact);
   FileCheck files;
   files.input("the scene", scenePath);
-  files.output("-o", output);
-  if (!options.compact.empty()) files.output("--compact", options.compact);
+  files.reference("-o", output);
+  if (!options.compact.empty()) files.reference("--compact", options.compact);
   if (!options.agreeWith.empty()) files.input("--agree-with", options.agreeWith);
   if (!options.larger.empty()) files.input("--from", options.larger);
   const ReferenceGoal goal = goalOf(options);
@@ -270,8 +265,12 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
   command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
   command.addFlag("--quiet", options->quiet, "print the result only: neither progress nor notes");
   command.run([options, command, &exitCode] {
-    // The variable's auto is for `render`.
-    if (options->sampler == "auto" && command.fromVariable("--sampler")) options->sampler = ReferenceOptions().sampler;
+    // Words of variables that are for `render` alone: a sampler by method, and a method by trials.
+    const ReferenceOptions byDefault{};
+    if (options->sampler == "auto" && command.fromVariable("--sampler")) options->sampler = byDefault.sampler;
+    if (options->method == toString(Method::evcm) && command.fromVariable("--method")) {
+      options->method = byDefault.method;
+    }
     exitCode = runReference(*options);
   });
 }

@@ -178,8 +178,9 @@ void RenderOutputs::goOnFrom(const nlohmann::ordered_json& notes, const Session&
 }
 
 unsigned RenderOutputs::nextSnapshot(const SnapshotSchedule& schedule, const Session& session) {
-  // With the schedule of the earlier part, numbers simply go on, also after snapshots that were left out.
-  if (sameSchedule_) return nextSnapshot_;
+  // With the schedule of the earlier part, numbers simply go on, also after snapshots that were left out. A part
+  // without snapshots replaces none.
+  if (sameSchedule_ || names_.snapshotEvery.empty()) return nextSnapshot_;
   // With another schedule, the first snapshot is the next that is not due yet.
   nextSnapshot_ = schedule.firstAfter(session.progressSeconds(), session.statistics().iterations);
   // Files of snapshots from that number on will be replaced, so their records go.

@@ -194,7 +194,6 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
   }
   // Film size, settings and methods of all runs.
   settings.size = has(options, "--size") ? parseSize("--size", get(options, "--size")) : profile.size;
-  checkCrops(options, settings);
   settings.render = renderSettings(options);
   settings.sampler = profile.sampler;
   if (has(options, "--sampler")) settings.sampler = parseSamplerOrAuto("--sampler", get(options, "--sampler"));
@@ -317,6 +316,7 @@ CampaignSettings begunCampaign(CampaignOptions& options) {
   }
   if (!begun) {
     refuseUnusedWords(options.defining, settings);
+    checkCrops(options, settings);
     return settings;
   }
   if (!options.resume) {
@@ -324,7 +324,9 @@ CampaignSettings begunCampaign(CampaignOptions& options) {
   }
   // The results file completes the options, so the settings are made anew.
   resumeCampaign(options, results);
-  return campaignSettings(options);
+  settings = campaignSettings(options);
+  checkCrops(options, settings);
+  return settings;
 }
 
 WrittenReport finishCampaign(const CampaignSettings& settings) {

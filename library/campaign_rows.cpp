@@ -132,6 +132,11 @@ void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSett
   }
 }
 
+bool takesSampler(const CampaignMethod& row) {
+  const bool isPssmlt = row.method == Method::mlt && row.variant == MetropolisVariant::pssmlt;
+  return !row.automatic && !isPssmlt;
+}
+
 void refuseUnusedWords(const CampaignWords& words, const CampaignSettings& settings) {
   const auto anyRow = [&](const auto& test) {
     return std::any_of(settings.methods.begin(), settings.methods.end(), test);
@@ -158,10 +163,13 @@ void refuseUnusedWords(const CampaignWords& words, const CampaignSettings& setti
   }
   const bool choosesVertices = anyMethod(choosesMergeVertices);
   if (given(words, "--merge-vertices") != nullptr && !choosesVertices) {
-    throw UsageError("--merge-vertices: is for vcm alone; expected vcm among --methods");
+    throw UsageError(
+        fmt::format("--merge-vertices: no method of the campaign has the choice; expected {} among --methods",
+                    methodsWith(choosesMergeVertices)));
   }
-  if (given(words, "--sampler") != nullptr && !anyMethod([](Method) { return true; })) {
-    throw UsageError("--sampler: is for no row of the campaign; expected one without -auto among --methods");
+  if (given(words, "--sampler") != nullptr && !anyRow(takesSampler)) {
+    throw UsageError(
+        "--sampler: is for no row of the campaign; expected one without -auto, other than mlt-pssmlt, among --methods");
   }
   // Options that make rows of ppm and mlt.
   if (given(words, "--direct-pass") != nullptr && !anyRow([](const CampaignMethod& row) { return row.directPass; })) {

@@ -23,6 +23,10 @@ std::map<std::string, std::string> parseDefinitions(const std::vector<std::strin
 // Fills methods, definitions, and of `render` radius, radiusAlpha, lightPaths and clock. Throws UsageError.
 void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSettings& settings);
 
+// Whether the row is rendered with the sampler of --sampler. Rows "-auto" have the best of their method, and the chains
+// of pssmlt draw numbers of their own, without a direct pass.
+bool takesSampler(const CampaignMethod& row);
+
 // Refuses options that no row of the settings has any use for, unless they are as by default. Throws UsageError.
 void refuseUnusedWords(const CampaignWords& words, const CampaignSettings& settings);
 

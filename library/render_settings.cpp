@@ -83,11 +83,15 @@ void refuseOptionsOfOtherVariants(const api::RenderOptions& options, const Rende
   if (otherDepth && chains.variant != MetropolisVariant::pssmlt) {
     throw UsageError(fmt::format("--rr-depth: {} ends no walk by roulette; expected --mlt pssmlt", variant));
   }
-  // Chains draw numbers of their own. Only the direct pass asks the sampler.
+  // Chains draw numbers of their own, and choose one pixel each. Only the direct pass has a sampler and a filter mode.
   const bool direct = canLeaveDirectLight(chains.variant) && chains.directPass;
   if (!direct && settings.sampler != SamplerKind::independent) {
     throw UsageError(fmt::format("--sampler {}: is for the direct pass, which these chains do without; expected {}",
                                  options.sampler, toString(SamplerKind::independent)));
+  }
+  if (!direct && settings.filterMode != RenderSettings().filterMode) {
+    throw UsageError(fmt::format("--filter-mode {}: is for the direct pass, which these chains do without; expected {}",
+                                 options.filterMode, api::RenderOptions().filterMode));
   }
 }
 

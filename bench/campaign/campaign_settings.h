@@ -76,7 +76,7 @@ struct CampaignSettings {
   std::array<uint32_t, 2> size{};
   RenderSettings render;                           // threads, clock, precision, ISA, radius, light paths of every run
   std::optional<SamplerKind> sampler;              // of every run; unset: the best of its method
-  std::map<std::string, std::string> definitions;  // values of every scene's variables
+  std::map<std::string, std::string> definitions;  // values of variables; each is of one scene at least
   std::filesystem::path out;                       // folder of everything that is written
   std::filesystem::path referenceFolder;           // of SCENE.exr
   bool referenceRequired = false;                  // a reference that is not there is an error, else it is rendered

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "bench/campaign/bias.h"
 #include "bench/campaign/environment.h"
@@ -131,6 +133,7 @@ class Campaign {
       plan.unreferenced.push_back(entry.name);
       plan.referenceSeconds += pace_.ofReference(entry);
     }
+    refuseUnusedDefinitions();
     // With counted iterations the plan has no seconds.
     if (!settings_.iterations) plan.renderSeconds = ahead;
     pace_.begin(plan, ahead + plan.referenceSeconds);
@@ -138,10 +141,30 @@ class Campaign {
     if (hooks_.planned) hooks_.planned(plan);
   }
 
+  // Throws LoadError for a name of -D that no scene uses. A scene that needs no loading may use any name.
+  void refuseUnusedDefinitions() const {
+    if (unused_.size() < settings_.scenes.size()) return;
+    for (const auto& definition : settings_.definitions) {
+      const std::string& name = definition.first;
+      if (!std::ranges::all_of(unused_, [&](const auto& scene) { return scene.second.contains(name); })) continue;
+      throw LoadError({settings_.scenes.front().file.string(), 0},
+                      fmt::format("neither this scene nor another of the campaign uses -D {}; expected names of their "
+                                  "variables",
+                                  name));
+    }
+  }
+
+  // The campaign's settings with the definitions that the scene uses. It has been loaded.
+  CampaignSettings settingsOf(const CampaignScene& entry) const {
+    CampaignSettings own = settings_;
+    for (const std::string& name : unused_.at(entry.name)) own.definitions.erase(name);
+    return own;
+  }
+
   // Whether no reference has to be rendered for the scene. Throws if that of a known scene cannot be used.
   bool hasReference(const CampaignScene& entry) {
     const Scene scene = load(entry);
-    if (!isKnown(entry, scene)) return referenceExists(scene, entry, settings_);
+    if (!isKnown(entry, scene)) return referenceExists(scene, entry, settingsOf(entry));
     knownReference(entry);
     return true;
   }
@@ -175,11 +198,14 @@ class Campaign {
     return found;
   }
 
-  // Loads a scene in the size of the campaign. Meanwhile a signal may end the process at once.
-  Scene load(const CampaignScene& entry) const {
+  // Loads a scene in the size of the campaign, and notes which definitions it does not use. Meanwhile a signal may end
+  // the process at once.
+  Scene load(const CampaignScene& entry) {
     LoadOptions loading;
     loading.filmSize = settings_.size;
     loading.defines = settings_.definitions;
+    std::set<std::string>& unused = unused_[entry.name];
+    loading.unusedDefine = [&](const std::string& name) { unused.insert(name); };
     const IdleScope idle(hooks_.session);
     return loadScene(entry.file, loading);
   }
@@ -220,10 +246,11 @@ class Campaign {
       putScene(entry, scene, known);
       return known;
     }
-    const bool exists = referenceExists(scene, entry, settings_);
+    const CampaignSettings own = settingsOf(entry);
+    const bool exists = referenceExists(scene, entry, own);
     const auto begin = Clock::now();
     Reference reference = sceneReference(
-        scene, entry, settings_, {.session = hooks_.session, .stopped = hooks_.stopped, .saveNow = {}, .advance = {}},
+        scene, entry, own, {.session = hooks_.session, .stopped = hooks_.stopped, .saveNow = {}, .advance = {}},
         hooks_.say);
     if (stopped()) return reference;
     if (!exists) pace_.finishReference(entry, secondsSince(begin));
@@ -329,6 +356,7 @@ class Campaign {
   std::optional<FileLock> lock_;
   std::optional<ResultsStore> store_;  // not before a new campaign is known to be able to begin
   Pace pace_;
+  std::map<std::string, std::set<std::string>> unused_;  // of each scene that was loaded: names of -D without a use
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bench/until/film_error.h"
+#include "bench/until/until.h"
 #include "engine/state/state_stream.h"
 
 namespace wavecrest {
@@ -124,20 +125,33 @@ uint64_t iterationsOf(const Holdings& holdings) {
   return std::min_element(holdings.chains.begin(), holdings.chains.end(), less)->iterations;
 }
 
-// Whether the iterations of different parts are independent of each other. Those of one run of Sobol points are not,
-// and the direct pass of mlt has one run for all parts.
-bool areIndependent(std::span<const CheckpointHeader> headers) {
-  if (headers.front().render.value("sampler", "") != "sobol") return true;
-  const auto isWhole = [](const Holdings::Run& run) { return run.begin % kSobolRun == 0; };
-  return std::all_of(headers.begin(), headers.end(), [&](const CheckpointHeader& header) {
+// How many iterations depend on each other, counted from the image's first one.
+uint64_t runOf(const CheckpointHeader& header) {
+  RenderSettings settings;
+  if (header.render.value("sampler", "") == toString(SamplerKind::sobol)) settings.sampler = SamplerKind::sobol;
+  const auto spread = static_cast<size_t>(FilterMode::spread);
+  return independentRun(settings, header.render.value("filter_mode", "") == kFilterModeNames[spread]);
+}
+
+// Why iterations of different parts depend on each other; empty: they do not. Parts that begin with a run are
+// independent. The direct pass of mlt deals the iterations of each run out to all parts.
+std::string whyDependent(std::span<const CheckpointHeader> headers) {
+  const uint64_t runLength = runOf(headers.front());
+  if (runLength == 1) return "";
+  const auto isWhole = [&](const Holdings::Run& run) { return run.begin % runLength == 0; };
+  const bool independent = std::all_of(headers.begin(), headers.end(), [&](const CheckpointHeader& header) {
     return header.holds.chains.empty() && std::all_of(header.holds.runs.begin(), header.holds.runs.end(), isWhole);
   });
+  if (independent) return "";
+  return runLength == kSobolRun
+             ? "points of one Sobol sequence depend on each other"
+             : "each two iterations have mirrored places in the filter, and a part begins between two of them";
 }
 
 // Why the parts are no halves of a reference; empty: they are.
-std::string whyNoHalves(const MergedParts& merged, const Spread& spread, bool independent) {
+std::string whyNoHalves(const MergedParts& merged, const Spread& spread, const std::string& dependence) {
   if (!merged.header.holds.chains.empty()) return "all parts of mlt share the error of b";
-  if (!independent) return "points of one Sobol sequence depend on each other";
+  if (!dependence.empty()) return dependence;
   if (!merged.missing.empty()) return "missing are " + merged.missing;
   return spread.isEven() ? "" : "every other part does not have half of the iterations";
 }
@@ -184,7 +198,7 @@ MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
                    [&](size_t a, size_t b) { return beginOf(headers[a].holds) < beginOf(headers[b].holds); });
   MergedParts merged;
   Spread spread(halves);
-  const bool independent = areIndependent(headers);
+  const std::string dependence = whyDependent(headers);
   bool comparable = true;
   Json stats;
   double seconds = 0;
@@ -230,9 +244,9 @@ MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
   // Whole ones: a part that was stopped has pixels that lack the last one.
   stats["iterations"] = holds.lacking == 0 ? iterationsOf(holds) : merged.film->minSamples();
   merged.missing = holds.missing(merged.header.render.value("chains", uint64_t{0}));
-  if (halves) merged.whyNoHalves = whyNoHalves(merged, spread, independent);
+  if (halves) merged.whyNoHalves = whyNoHalves(merged, spread, dependence);
   if (halves && merged.whyNoHalves.empty()) merged.halves = spread.halves();
-  if (comparable && independent) {
+  if (comparable && dependence.empty()) {
     merged.relativeError = spread.relativeError(merged.film->resolve(), merged.film->area().width);
   }
   if (merged.relativeError) stats["relative_error"] = *merged.relativeError;

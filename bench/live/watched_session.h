@@ -57,8 +57,8 @@ class WatchedSession final : public Session {
   const std::unique_ptr<Session> session_;
   const LookTaker taker_;
   const BlockSample blocks_;
-  bool errorKnowable_;
-  uint64_t run_;                      // of iterations that depend on each other
+  const uint64_t run_;                // of iterations that depend on each other, counted from the image's first one
+  bool errorKnowable_;                // not where the session begins within a run
   std::optional<FilmSlices> slices_;  // nothing before the first iteration is done
   uint64_t slicesUntil_ = 0;          // iterations of the last slice
   std::optional<FilmError> error_;

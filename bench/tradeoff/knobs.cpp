@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
+#include <utility>
 
 #include "bench/enumerator_name.h"
 #include "engine/compile/compiled_scene.h"
@@ -131,21 +131,27 @@ std::vector<Variant> variantsOf(const Scene& scene, const RenderSettings& base) 
   return variants.take();
 }
 
-std::vector<Variant> chooseVariants(std::vector<Variant> all, std::span<const std::string> knobs) {
+namespace {
+
+bool isCalled(const Variant& variant, std::string_view word) {
   const auto bare = [](std::string_view knob) {
     return knob.substr(std::min(knob.find_first_not_of('-'), knob.size()));
   };
-  const auto names = [&](const Variant& variant, std::string_view word) { return bare(variant.knob) == bare(word); };
-  for (const std::string& word : knobs) {
-    if (std::none_of(all.begin() + 1, all.end(), [&](const Variant& variant) { return names(variant, word); })) {
-      throw std::invalid_argument(fmt::format("'{}' is no setting that is varied here", word));
-    }
-  }
+  return bare(variant.knob) == bare(word);
+}
+
+}  // namespace
+
+bool hasKnob(std::span<const Variant> all, std::string_view word) {
+  return std::any_of(all.begin() + 1, all.end(), [&](const Variant& variant) { return isCalled(variant, word); });
+}
+
+std::vector<Variant> chooseVariants(std::vector<Variant> all, std::span<const std::string> knobs) {
   std::vector<Variant> chosen;
   for (size_t i = 0; i < all.size(); ++i) {
     // The baseline and double precision, with which the others are compared.
     const bool compared = i < 2;
-    if (compared || std::any_of(knobs.begin(), knobs.end(), [&](const auto& word) { return names(all[i], word); })) {
+    if (compared || std::any_of(knobs.begin(), knobs.end(), [&](const auto& word) { return isCalled(all[i], word); })) {
       chosen.push_back(std::move(all[i]));
     }
   }

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/plan/render_settings.h"
@@ -21,8 +22,10 @@ struct Variant {
 // scene. base: the settings that are varied, of precision float.
 std::vector<Variant> variantsOf(const Scene& scene, const RenderSettings& base);
 
-// The baseline, double precision, and those of the variants whose knob is one of these words, written with or without
-// leading dashes. Throws std::invalid_argument for a word that is no knob of any of them.
+// Whether a variant besides the baseline has this word as its knob, written with or without leading dashes.
+bool hasKnob(std::span<const Variant> all, std::string_view word);
+
+// The baseline, double precision, and those of the variants whose knob is one of these words.
 std::vector<Variant> chooseVariants(std::vector<Variant> all, std::span<const std::string> knobs);
 
 }  // namespace wavecrest

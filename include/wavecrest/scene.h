@@ -43,8 +43,9 @@ class WAVECREST_EXPORT Scene {
   const std::vector<std::string>& warnings() const;  // what LoadOptions::lenient skipped
 
   // What is in the scene, which kernels and intersector it gets, memory for each method, which paths each method can
-  // make and by which its reference should be rendered: the object that `wavecrest inspect --json` prints. Of the
-  // options threads, precision, accel and wave count. Throws Error.
+  // make and by which its reference should be rendered: the object that `wavecrest inspect --json` prints. Options that
+  // decide kernels, memory or the radius of merges count: threads, precision, accel, instances, wave, radius, chains
+  // and memory among them. The method does not count, and light paths are refused. Throws Error.
   std::string inspect(const RenderOptions& options = {}) const;
 
  private:

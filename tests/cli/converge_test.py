@@ -293,6 +293,24 @@ class Rows(Converge):
         self.assertEqual(self.runs("a")[1]["definitions"], "power=2")
         self.converge(*arguments, "-D", "power", "--out", "b", expect=USAGE)
 
+    def test_a_definition_is_for_the_scenes_that_use_it(self):
+        self.write("own.xml", ROOM.replace("RADIANCE", "$power").replace("<sensor", '<default name="power" value="1"/><sensor', 1))
+        self.write("other.xml", ROOM.replace("RADIANCE", "1"))
+        small = ["--methods", "pt", "--spp", "1", "--seeds", "1", "--size", "16x12"]
+        self.converge("other.xml", "own.xml", *small, "-D", "power=2", "--out", "a")
+        for scenes in (["other.xml", "own.xml"], ["other.xml"]):
+            result = self.converge(*scenes, *small, "-D", "powr=2", "--out", "b", "--progress", "none", expect=INPUT)
+            self.assert_one_error_line(result, r".*other\.xml: neither this scene nor another of the campaign uses -D powr;")
+            self.assertFalse(pathlib.Path(self.path("b")).exists(), "nothing is begun")
+        # The command for a missing reference has the definitions of its scene.
+        os.mkdir(self.path("given"))
+        for scene, command in (("other", "reference other.xml --size 16x12 -o"),
+                               ("own", "reference own.xml --size 16x12 -D power=2 -o")):  # fmt: skip
+            scenes = [f"{scene}.xml", *({"other.xml", "own.xml"} - {f"{scene}.xml"})]
+            result = self.converge(*scenes, *small, "-D", "power=2", "--reference", "given", "--out", "b", "--progress", "none",
+                                   expect=INPUT)  # fmt: skip
+            self.assertIn(command, result.stderr)
+
     def test_findings_are_about_time(self):
         self.tiny("a", "--check", expect=USAGE)
 
@@ -331,6 +349,8 @@ class Refusals(Converge):
             ["--methods", "vcm", "--merge-vertices", "last"],
             ["--methods", "pt,vcm-auto", "--radius", "0.01"],
             ["--methods", "pt-auto,vcm-auto", "--sampler", "sobol"],
+            ["--methods", "pt-auto,mlt-pssmlt", "--sampler", "sobol"],
+            ["--methods", "mlt", "--mlt", "pssmlt", "--sampler", "sobol"],
             ["--methods", "pt,vcm-auto", "--light-paths", "500"],
             ["--methods", "pt,vcm", "--direct-pass"],
             ["--methods", "pt", "--mlt", "pathspace"],

@@ -112,7 +112,7 @@ class Words(CommandTest):
             ("render", "--mlt", "pssmlt mmlt pathspace"),
             ("render", "--merge-vertices", "all first"),
             ("render", "--progress", "auto bar jsonl none"),
-            ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm gpt evcm"),
+            ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm gpt"),
             ("converge", "--profile", "quick standard study paper"),
             ("converge", "--methods", "pt lt bpt mlt ppm bpm vcm gpt evcm mlt-pathspace mlt-pssmlt ppm-direct "
              + " ".join(f"{method}-auto" for method in "pt lt bpt ppm bpm vcm gpt evcm".split())),
@@ -124,6 +124,7 @@ class Words(CommandTest):
             self.assertEqual(sorted(completed("wavecrest", command, option, "''")), sorted(expected.split()), option)
         self.assertEqual(completed("wavecrest", "converge", "--methods", "pt,mlt-p"), ["pt,mlt-pathspace", "pt,mlt-pssmlt"])
         self.assertIn("ssim", completed("wavecrest", "compare", "--metrics", "ss"))
+        self.assertNotIn("radiance", completed("wavecrest", "inspect", "--guide", "''"), "a pixel, X,Y")
 
 
 class Readers(CommandTest):

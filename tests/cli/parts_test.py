@@ -198,11 +198,28 @@ class Sums(PartsTest):
         self.merge(files[0], "--stats", "merged.json")
         self.assertNotIn("relative_error", read_json(self.path("merged.json")))
 
+    def test_the_error_is_not_known_where_pairs_of_iterations_are_split(self):
+        self.write("scene.xml", """<scene version="3.0.0"><sensor type="perspective"><float name="fov" value="60"/>
+            <film type="hdrfilm"><rfilter type="gaussian"/></film></sensor>
+            <shape type="sphere"><point name="center" x="0" y="0" z="4"/><float name="radius" value="1.5"/>
+            <emitter type="area"><rgb name="radiance" value="1"/></emitter></shape></scene>""")
+        for parts, more, known in ((8, [], False), (4, [], True), (8, ["--filter-mode", "sample"], True)):
+            files = self.all_parts("pt", "--sampler", "independent", *more, parts=parts, spp=8, scene="scene.xml",
+                                   name=f"{parts}{len(more)}-")  # fmt: skip
+            self.merge(*files, "--stats", "merged.json")
+            self.assertEqual("relative_error" in read_json(self.path("merged.json")), known, f"{parts} {more}")
+            result = self.merge(*files, "--reference", f"{parts}{len(more)}.exr", expect=DONE if known else INPUT)
+            self.assertEqual("--reference: each two iterations have mirrored places" in result.stderr, not known)
+
 
 class References(PartsTest):
     def test_parts_make_a_reference_for_campaigns(self):
         files = self.all_parts("pt", "--sampler", "independent", spp=1000, size="64x48")
         self.merge(*files, "--reference", "references/cornell-diffuse.exr", expect=USAGE)  # there is no such folder
+        for name in ("-", "room.png"):
+            result = self.merge(*files, "--reference", name, expect=USAGE)
+            self.assert_one_error_line(result, f"--reference {name}: expected a name that ends in .exr, which keeps the halves")
+            self.assertFalse((self.folder / name).exists())
         (self.folder / "references").mkdir()
         self.merge(*files, "--reference", "references/cornell-diffuse.exr", "--stats", "merged.json")
         attributes = read_exr_header(self.path("references/cornell-diffuse.exr"))

@@ -108,7 +108,7 @@ class Reference(CommandTest):
 
     def test_a_variable_that_is_for_renders_is_no_mistake(self):
         self.run_wavecrest("reference", "cornell-diffuse", "--size", "16x16", "--spp", "1", "-o", "r.exr",
-                           variables={"WAVECREST_SAMPLER": "auto"})  # fmt: skip
+                           variables={"WAVECREST_SAMPLER": "auto", "WAVECREST_METHOD": "evcm"})  # fmt: skip
         self.assertEqual(self.header("r.exr")["wavecrest:sampler"], "independent")
         self.reference("--sampler", "auto", expect=USAGE)
 
@@ -158,7 +158,9 @@ class Reference(CommandTest):
 
     def test_wrong_words_and_files(self):
         result = self.reference("--method", "pt", "--radius", "0.01", "--quiet", expect=USAGE)
-        self.assert_one_error_line(result, r"--radius: pt does not merge; expected ppm, bpm, vcm or evcm$")
+        self.assert_one_error_line(result, r"--radius: pt does not merge; expected ppm, bpm or vcm$")
+        result = self.reference("--method", "evcm", "--quiet", expect=USAGE)
+        self.assert_one_error_line(result, r"--method evcm: trials choose another method; expected that method$")
         self.reference("--method", "pt", "--radius", "0.001", "--spp", "1", "-o", "default.exr")
         self.reference("--quiet", "--progress", "loud", expect=USAGE)
         self.reference("--method", "guess", expect=USAGE)

@@ -108,12 +108,14 @@ class Usage(CommandTest):
             (["--no-direct-pass"], "--no-direct-pass: " + no_chains),
             (["-m", "mlt", "--mlt", "pssmlt", "--no-direct-pass"], r"--no-direct-pass: pssmlt .*; expected --mlt mmlt or"),
             (["-m", "mlt", "--no-direct-pass", "--sampler", "sobol"], r"--sampler sobol: .*; expected independent$"),
+            (["-m", "mlt", "--no-direct-pass", "--filter-mode", "sample"], r"--filter-mode sample: .*; expected spread$"),
+            (["-m", "mlt", "--mlt", "pssmlt", "--filter-mode", "sample"], r"--filter-mode sample: .*; expected spread$"),
         ]:
             with self.subTest(arguments):
                 self.assert_one_error_line(self.render("--dry-run", *arguments, expect=USAGE), answer)
-        # Defaults fit every method, and the direct pass of mlt has a sampler.
+        # Defaults fit every method, and the direct pass of mlt has a sampler and a filter mode.
         self.render("--dry-run", "--radius", "auto", "--chains", "16384", "--connection-roulette", "0.2", "--mlt", "mmlt")
-        self.render("--dry-run", "-m", "mlt", "--sampler", "sobol")
+        self.render("--dry-run", "-m", "mlt", "--sampler", "sobol", "--filter-mode", "sample")
         self.render("--dry-run", "-m", "gpt", "--guide", "off", "--spp", "8", "--part", "1/2", "--checkpoint", "c")
 
     def test_a_scene_may_follow_a_list_of_methods(self):
@@ -278,6 +280,11 @@ class Usage(CommandTest):
             self.run_wavecrest(*command, variables={"WAVECREST_SAMPLER": "sobol"})
             wrong = self.run_wavecrest(*command, "--sampler", "sobol", expect=USAGE)
             self.assert_one_error_line(wrong, "--sampler sobol: is for the direct pass")
+        for row in ("pt-auto", "mlt-pssmlt"):
+            command = ["converge", "cornell-diffuse", "--size", "8x8", "--spp", "1", "--seeds", "1", "--methods", row]
+            self.run_wavecrest(*command, "--out", row, variables={"WAVECREST_SAMPLER": "sobol"})
+            wrong = self.run_wavecrest(*command, "--sampler", "sobol", "--out", "b", expect=USAGE)
+            self.assert_one_error_line(wrong, "--sampler: is for no row of the campaign")
 
     def test_variables_of_the_caller_reach_no_test(self):
         command = [sys.executable, "-c", "import harness, os; print(sorted(set(os.environ) & {'WAVECREST_SIZE', 'WAVECREST'}))"]

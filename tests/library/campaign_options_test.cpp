@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 
@@ -118,6 +120,26 @@ TEST(CampaignOptions, whatACampaignHasMayBeGivenAgain) {
   EXPECT_EQ(settings.methods.size(), 2u);
   EXPECT_EQ(settings.seeds, 2u);
   EXPECT_TRUE(settings.keepImages);
+}
+
+// Size and scenes come from the results file.
+TEST(CampaignOptions, aCropOfTheCampaignMayBeGivenAgainAlone) {
+  for (const char* scene : {"cornell-diffuse", "mine"}) {
+    const Defining crop = {{"--crop", {std::string(scene) + ":300,300,50x50"}}};
+    Defining begun = crop;
+    begun["--size"] = {"512x384"};
+    begun["scenes"] = {std::string(scene) == "mine" ? "mine.xml" : scene};
+    EXPECT_EQ(resumed(begun, crop).size, (std::array<uint32_t, 2>{512, 384})) << scene;
+  }
+}
+
+TEST(CampaignOptions, whereVcmMergesIsForTheMethodsThatHaveTheChoice) {
+  api::CampaignOptions options = campaignOf("--merge-vertices", {"all"});
+  options.defining["--methods"] = {"ppm"};
+  EXPECT_EQ(refusalOfCampaign(options),
+            "--merge-vertices: no method of the campaign has the choice; expected vcm or evcm among --methods");
+  options.defining["--methods"] = {"evcm"};
+  EXPECT_NO_THROW(begunCampaign(options));
 }
 
 TEST(CampaignOptions, aMethodIsAddedToTheProfilesWithTheVariantsOfMltThatWereAskedFor) {
