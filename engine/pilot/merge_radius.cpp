@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "engine/pilot/light_walks.h"
 #include "engine/pilot/median.h"
@@ -182,7 +184,12 @@ PhotonDensity photonDensity(std::span<const MergePlace> places, std::span<const 
                             double photonsPerPosition) {
   // The disc to the kNearest-th position has kNearest - 1 in it and one at its rim.
   constexpr size_t kNearest = 8, kMostPlaces = 256;
-  if (positions.size() < kNearest || places.empty()) return {};
+  // By x, so that a place is compared with its neighbours alone.
+  const auto toX = [](const Position& position) { return position[0]; };
+  std::vector<Position> sorted(positions.begin(), positions.end());
+  std::erase_if(sorted, [](const Position& position) { return !std::isfinite(position[0]); });
+  if (sorted.size() < kNearest || places.empty()) return {};
+  std::ranges::sort(sorted, {}, toX);
   double areas = 0, lobeAreas = 0;
   size_t count = 0;
   const size_t step = std::max<size_t>(places.size() / kMostPlaces, 1);
@@ -191,13 +198,22 @@ PhotonDensity photonDensity(std::span<const MergePlace> places, std::span<const 
     // The least squared distances so far, in order.
     std::array<float, kNearest> nearest;
     nearest.fill(std::numeric_limits<float>::infinity());
-    for (const Position& there : positions) {
+    // Whether positions that are farther in x can be nearer: rounded as it is, the sum of squares is no less than x *
+    // x.
+    const auto visit = [&](const Position& there) {
       const float x = there[0] - here[0], y = there[1] - here[1], z = there[2] - here[2];
+      if (!(x * x < nearest.back())) return false;
       const float square = x * x + y * y + z * z;
-      if (!(square < nearest.back())) continue;
+      if (!(square < nearest.back())) return true;
       size_t k = kNearest - 1;
       for (; k > 0 && square < nearest[k - 1]; --k) nearest[k] = nearest[k - 1];
       nearest[k] = square;
+      return true;
+    };
+    const auto middle = std::ranges::lower_bound(sorted, here[0], {}, toX);
+    for (auto next = middle; next != sorted.end() && visit(*next); ++next) {
+    }
+    for (auto next = middle; next != sorted.begin() && visit(*std::prev(next)); --next) {
     }
     const double area = std::numbers::pi * nearest.back();
     areas += area;

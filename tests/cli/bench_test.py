@@ -151,8 +151,21 @@ class Tradeoff(CommandTest):
         refused = self.run_wavecrest("bench", "cornell-diffuse", "--tradeoff", "--methods", "pt", "--knobs", "radius",
                                      "--size", "32x24", expect=USAGE)
         self.assert_one_error_line(refused, "--knobs: 'radius' is no setting that is varied here")
+        unknown = self.run_wavecrest("bench", "cornell-diffuse", "--tradeoff", "--methods", "pt,mlt", "--knobs", "sampler,radius",
+                                     "--size", "8x8", expect=USAGE)
+        self.assert_one_error_line(unknown, "--knobs: 'radius' is no setting that is varied here")
+        self.assertEqual(unknown.stdout, "", "nothing is measured")
         alone = self.run_wavecrest("bench", "cornell-diffuse", "--seeds", "4", expect=USAGE)
         self.assert_one_error_line(alone, "--seeds goes with --tradeoff; expected it")
+
+    def test_a_method_without_a_chosen_setting_has_the_compared_ones(self):
+        self.run_wavecrest("bench", "cornell-diffuse", "--tradeoff", "--methods", "pt,mlt", "--knobs", "sampler", "--size", "8x8",
+                           "--duration", "0.1s", "--seeds", "2", "--json", self.path("trade.json"))
+        result = read_json(self.path("trade.json"))
+        validate(result)
+        compared = ["baseline", "--precision"]
+        self.assertEqual([[row["knob"] for row in entry["rows"]] for entry in result["results"]],
+                         [[*compared, "--sampler"], compared])
 
     def test_a_page_is_alone_on_stdout(self):
         told = self.run_wavecrest("bench", "cornell-diffuse", "--tradeoff", "--methods", "pt", "--size", "32x24", "--seeds",
@@ -222,22 +235,6 @@ class Score(CommandTest):
     def no_hashes(self):
         return self.write("none.json", json.dumps({"score_version": 1, "images": {}}))
 
-    def test_without_a_hash_an_image_is_compared_with_its_picture(self):
-        told = self.run_wavecrest(*self.PART, "--hashes", self.no_hashes(), "--json", self.path("score.json"), expect=DONE)
-        self.assertRegex(told.stdout, r"(?m)^cornell-diffuse +vcm +within tolerance .*\n"
-                                      r" +within tolerance \(worst block: SSIM \S+, mean off by \S+ %; image: ")
-        self.assertIn("images: 2 within tolerance", told.stdout)
-        self.assertNotIn("NOT VALID", told.stdout)
-        result = read_json(self.path("score.json"))
-        validate(result)
-        self.assertTrue(result["valid"])
-        for entry in result["entries"]:
-            self.assertEqual(entry["image"], "within tolerance")
-            self.assertIn(entry["image_verdict"], told.stdout)
-            self.assertGreater(entry["image_difference"]["ssim"], 0.995)
-            self.assertLess(entry["image_difference"]["mean_off"], 0.003)
-        self.is_exported_for_other_tools(result)
-
     def is_exported_for_other_tools(self, result):
         result["valid"] = False
         self.write("score.json", json.dumps(result))
@@ -264,9 +261,20 @@ class Score(CommandTest):
             hashes["images"]["small"][group]["cornell-diffuse"]["vcm"] = "0123456789abcdef"
             hashes["builds"]["small"][group] = "0.0.9, a compiler"
         other = self.write("other.json", json.dumps(hashes))
-        self.run_wavecrest(*self.PART, "--hashes", other, "--json", self.path("score.json"), expect=DONE)
-        self.assertEqual([entry["image"] for entry in read_json(self.path("score.json"))["entries"]],
-                         ["exact", "within tolerance"])
+        told = self.run_wavecrest(*self.PART, "--hashes", other, "--json", self.path("score.json"), expect=DONE)
+        self.assertRegex(told.stdout, r"(?m)^cornell-diffuse +vcm +within tolerance .*\n"
+                                      r" +within tolerance \(worst block: SSIM \S+, mean off by \S+ %; image: ")
+        self.assertIn("images: 1 exact, 1 within tolerance", told.stdout)
+        self.assertNotIn("NOT VALID", told.stdout)
+        result = read_json(self.path("score.json"))
+        validate(result)
+        self.assertTrue(result["valid"])
+        exact, entry = result["entries"]
+        self.assertEqual((exact["image"], entry["image"]), ("exact", "within tolerance"))
+        self.assertIn(entry["image_verdict"], told.stdout)
+        self.assertGreater(entry["image_difference"]["ssim"], 0.995)
+        self.assertLess(entry["image_difference"]["mean_off"], 0.003)
+        self.is_exported_for_other_tools(result)
 
     def test_another_picture_is_refused(self):
         self.run_wavecrest(*self.PART, "--write-pictures", self.path("pictures.json"))
@@ -376,9 +384,11 @@ class Modes(CommandTest):
             (["--compare", "a.json", "b.json"], r".*[ab]\.json: cannot be read"),
             (["none.xml", "--specialization"], r".*none\.xml: no such file"),
         ]:
-            with self.subTest(arguments):
-                result = self.run_wavecrest("bench", *arguments, expect=None, variables=variables)
-                self.assert_one_error_line(result, answer)
+            for threads in ("2", "04", "+4"):
+                with self.subTest(arguments, threads=threads):
+                    result = self.run_wavecrest("bench", *arguments, expect=None,
+                                                variables=variables | {"WAVECREST_THREADS": threads})  # fmt: skip
+                    self.assert_one_error_line(result, answer)
         typed = self.run_wavecrest("bench", "--score", "tiny", "--size", "8x8", expect=USAGE, variables=variables)
         self.assert_one_error_line(typed, "--score has sizes")
 

@@ -78,7 +78,7 @@ class Render(Signals):
         self.assertGreater(json.loads(output)["camera_paths"], 0)
 
     def test_a_saved_render_is_the_same_in_the_end(self):
-        arguments = ["-m", "vcm", "--spp", "20000", "-o"]  # seconds
+        arguments = ["-m", "vcm", "--spp", "8000", "-o"]  # a second and more
         self.run_wavecrest("render", *SMALL, *arguments, "whole.pfm")
         process = self.start("render", *SMALL, *arguments, "saved.pfm", "--progress", "jsonl")
         process.stderr.readline()  # from here on it heeds signals

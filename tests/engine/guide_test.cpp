@@ -129,7 +129,7 @@ SeedMeans imagesWith(const Scene& scene, const std::optional<WrongGuide>& wrong,
 }
 
 void expectAnyGuideIsRight(const Scene& scene, const std::string& where) {
-  const uint64_t iterations = effort(64, 4);
+  const uint64_t iterations = samples(64, 4);
   const SeedMeans truth = imagesWith(scene, std::nullopt, 2 * iterations, 100);
   const auto check = [&](const WrongGuide& wrong, const char* name) {
     // The less the BSDF draws, the rarer and brighter are its samples, and the more of them a mean takes to be normal.

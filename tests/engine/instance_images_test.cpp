@@ -46,7 +46,7 @@ class InstanceImagesTest : public testing::TestWithParam<Method> {};
 
 TEST_P(InstanceImagesTest, areThoseOfCopies) {
   const Scene scene = furnishedRoom();
-  const uint64_t count = GetParam() == Method::mlt ? 64 : effort(16, 4);
+  const uint64_t count = GetParam() == Method::mlt ? samples(64, 16) : effort(16, 4);
   const SeedMeans kept = renderSeeds(scene, settingsOfInstances(GetParam(), Instancing::kept), count, 1000);
   const SeedMeans copied = renderSeeds(scene, settingsOfInstances(GetParam(), Instancing::expanded), count, 2000);
   expectSameTruth(kept, copied, std::string(toString(GetParam())));
@@ -57,7 +57,8 @@ TEST(InstanceImages, ofPathSpaceAreThoseOfCopies) {
   RenderSettings kept = settingsOfInstances(Method::mlt, Instancing::kept),
                  copied = settingsOfInstances(Method::mlt, Instancing::expanded);
   kept.metropolis.variant = copied.metropolis.variant = MetropolisVariant::pathspace;
-  expectSameTruth(renderSeeds(scene, kept, 64, 1000), renderSeeds(scene, copied, 64, 2000), "pathspace");
+  expectSameTruth(renderSeeds(scene, kept, samples(64, 16), 1000), renderSeeds(scene, copied, samples(64, 16), 2000),
+                  "pathspace");
 }
 
 INSTANTIATE_TEST_SUITE_P(Engine, InstanceImagesTest,

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <random>
 #include <set>
 #include <vector>
 
@@ -249,6 +252,58 @@ TEST(PhotonDensity, isThatOfEvenPhotons) {
   EXPECT_NEAR(photonDensity(places, positions, 3).perArea / (3 * 64 * 64), 1, 0.4);
   EXPECT_EQ(photonDensity({}, positions, 3).perArea, 0);
   EXPECT_EQ(photonDensity(places, {}, 3).perArea, 0);
+}
+
+// The square of the distance to the eighth nearest of the positions.
+float eighthSquare(const std::array<float, 3>& here, const std::vector<std::array<float, 3>>& positions) {
+  std::vector<float> squares;
+  for (const std::array<float, 3>& there : positions) {
+    const float x = there[0] - here[0], y = there[1] - here[1], z = there[2] - here[2];
+    const float square = x * x + y * y + z * z;
+    if (std::isfinite(square)) squares.push_back(square);
+  }
+  std::ranges::nth_element(squares, squares.begin() + 7);
+  return squares[7];
+}
+
+// A search that visits all positions. Some positions are on a wall x = 0.25, some places are outside of all positions.
+TEST(PhotonDensity, isThatOfASearchThroughAllPositions) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  const auto point = [&](bool onWall) {
+    const float x = uniform(random), y = uniform(random), z = uniform(random);
+    return std::array<float, 3>{onWall ? 0.25f : x, y, z};
+  };
+  std::vector<std::array<float, 3>> positions;
+  for (size_t i = 0; i < 20'000; ++i) positions.push_back(point(i % 4 == 0));
+  constexpr float kBad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()};
+  for (const float bad : kBad) {
+    positions.push_back({bad, 0, 0});
+    positions.push_back({0, bad, 0});
+  }
+  std::vector<MergePlace> places;
+  for (size_t i = 0; i < 40; ++i) {
+    places.push_back({.position = point(i % 4 == 0), .lobes = 1.0 + static_cast<double>(i)});
+  }
+  for (const float x : {-3.0f, 3.0f}) places.push_back({.position = {x, 0, 0}, .lobes = 7});
+  double areas = 0, lobeAreas = 0;
+  for (const MergePlace& place : places) {
+    const double area = std::numbers::pi * eighthSquare(place.position, positions);
+    areas += area;
+    lobeAreas += area * place.lobes;
+  }
+  const PhotonDensity density = photonDensity(places, positions, 3);
+  EXPECT_EQ(density.perArea, 8 * 3.0 * static_cast<double>(places.size()) / areas);
+  EXPECT_EQ(density.lobes, lobeAreas / areas);
+}
+
+TEST(PhotonDensity, isUnknownWithFewerThanEightFinitePositions) {
+  std::vector<std::array<float, 3>> positions(7, std::array<float, 3>{});
+  positions.push_back({std::numeric_limits<float>::quiet_NaN(), 0, 0});
+  const std::vector<MergePlace> places(1, MergePlace{.position = {0, 0, 1}, .pixel = 1});
+  EXPECT_EQ(photonDensity(places, positions, 3).lobes, 1);
+  positions.back() = {0, 0, 0};
+  EXPECT_GT(photonDensity(places, positions, 3).perArea, 0);
 }
 
 // ---- renders --------------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/scene/scene_error.h"
+#include "tests/effort.h"
 #include "tests/engine/metropolis_settings.h"
 #include "tests/engine/test_scenes.h"
 
@@ -53,7 +54,7 @@ TEST_P(MetropolisTest, closedBoxForEachDepth) {
     RenderSettings chosen = settings();
     chosen.limits.maxDepth = maxDepth;
     expectTruth(
-        renderSeeds(scene, chosen, 64),
+        renderSeeds(scene, chosen, samples(64, 16)),
         [&](uint32_t, uint32_t, size_t) -> std::optional<double> { return series(0.5, maxDepth); },
         "K = " + std::to_string(maxDepth));
   }
@@ -62,14 +63,14 @@ TEST_P(MetropolisTest, closedBoxForEachDepth) {
 TEST_P(MetropolisTest, closedBoxWithLongPaths) {
   const Scene scene = sceneFile("validation/closed-box", kWidth, kHeight, {{"albedo", "0.8"}});
   expectTruth(
-      renderSeeds(scene, settings(), 96),
+      renderSeeds(scene, settings(), samples(96, 24)),
       [&](uint32_t, uint32_t, size_t) -> std::optional<double> { return series(0.8, kUnlimitedDepth); }, "albedo 0.8");
 }
 
 TEST_P(MetropolisTest, pointLightInADiffuseSphere) {
   const Scene scene = sceneFile("validation/point-in-sphere", kWidth, kHeight, {{"albedo", "0.5"}});
   expectTruth(
-      renderSeeds(scene, settings(), 64),
+      renderSeeds(scene, settings(), samples(64, 16)),
       [&](uint32_t, uint32_t, size_t) -> std::optional<double> {
         return (series(0.5, kUnlimitedDepth) - 1) / std::numbers::pi;
       },
@@ -79,7 +80,8 @@ TEST_P(MetropolisTest, pointLightInADiffuseSphere) {
 TEST_P(MetropolisTest, diffuseBoxIsThatOfPathTracing) {
   const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
   RenderSettings other = defaults();
-  expectSameTruth(renderSeeds(scene, settings(), 128), renderSeeds(scene, other, 128, 2000), scene.name);
+  expectSameTruth(renderSeeds(scene, settings(), samples(128, 32)), renderSeeds(scene, other, samples(128, 32), 2000),
+                  scene.name);
 }
 
 TEST_P(MetropolisTest, parallelRaysSeeWhatThoseOfTheUnderlyingMethodDo) {
@@ -90,23 +92,23 @@ TEST_P(MetropolisTest, parallelRaysSeeWhatThoseOfTheUnderlyingMethodDo) {
     EXPECT_THROW(Session::create(scene, settings()), SceneError) << "its perturbations turn rays about one point";
     return;
   }
-  expectReference(scene, settings(), 128, 128);
+  expectReference(scene, settings(), samples(128, 32), samples(128, 32));
 }
 
 TEST_P(MetropolisTest, causticIsThatOfTheUnderlyingMethod) {
-  expectReference(sceneFile("cornell-mirror", kWidth, kHeight), settings(), 192, 192);
+  expectReference(sceneFile("cornell-mirror", kWidth, kHeight), settings(), samples(192, 48), samples(192, 48));
 }
 
 TEST_P(MetropolisTest, aSkyThatIsHiddenFromTheCameraLightsTheScene) {
-  expectReference(sceneFile("features/hide-emitters", kWidth, kHeight), settings(), 192, 192);
+  expectReference(sceneFile("features/hide-emitters", kWidth, kHeight), settings(), samples(192, 48), samples(192, 48));
 }
 
 TEST_P(MetropolisTest, everyPrecisionGivesTheSameImage) {
   const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
-  const SeedMeans expected = renderSeeds(scene, settings(), 64);
+  const SeedMeans expected = renderSeeds(scene, settings(), samples(64, 16));
   RenderSettings chosen = settings();
   chosen.precision = Precision::doubled;
-  expectSameTruth(expected, renderSeeds(scene, chosen, 64, 3000), "double");
+  expectSameTruth(expected, renderSeeds(scene, chosen, samples(64, 16), 3000), "double");
 }
 
 // A crop window is rendered for itself: chains do not look elsewhere, and the image is the same there.
@@ -118,7 +120,8 @@ TEST_P(MetropolisTest, cropWindowShowsItsPartOfTheImage) {
   scene.film.cropY = 5;
   scene.film.cropWidth = 16;
   scene.film.cropHeight = 11;
-  expectSameTruth(renderSeeds(scene, settings(), 256), renderSeeds(scene, other, 256, 2000), "crop");
+  expectSameTruth(renderSeeds(scene, settings(), samples(256, 64)), renderSeeds(scene, other, samples(256, 64), 2000),
+                  "crop");
 }
 
 // A narrow tent, whose sum over pixels is far from 1, and a wide Gaussian: what lies around the rectangle counts.
@@ -129,7 +132,7 @@ TEST_P(MetropolisTest, everyFilterShowsTheImageOfPathTracing) {
     scene.film.filter = gaussian ? ReconstructionFilter::gaussian : ReconstructionFilter::tent;
     scene.film.filterRadius = 0.7;
     scene.film.gaussianStddev = 0.9;
-    expectSameTruth(renderSeeds(scene, settings(), 96), renderSeeds(scene, other, 128, 2000),
+    expectSameTruth(renderSeeds(scene, settings(), samples(96, 24)), renderSeeds(scene, other, samples(128, 32), 2000),
                     gaussian ? "gaussian" : "tent");
   }
 }
@@ -142,7 +145,8 @@ TEST_P(MetropolisTest, aFilterSeesWhatLiesAroundACropWindow) {
   scene.film.cropWidth = 16;
   scene.film.cropHeight = 11;
   scene.film.filter = ReconstructionFilter::gaussian;
-  expectSameTruth(renderSeeds(scene, settings(), 256), renderSeeds(scene, other, 256, 2000), "crop, gaussian");
+  expectSameTruth(renderSeeds(scene, settings(), samples(256, 64)), renderSeeds(scene, other, samples(256, 64), 2000),
+                  "crop, gaussian");
 }
 
 TEST_P(MetropolisTest, aLensShowsTheImageOfPathTracing) {
@@ -156,7 +160,8 @@ TEST_P(MetropolisTest, aLensShowsTheImageOfPathTracing) {
     return;
   }
   RenderSettings other = defaults();
-  expectSameTruth(renderSeeds(scene, settings(), 128), renderSeeds(scene, other, 128, 2000), "lens");
+  expectSameTruth(renderSeeds(scene, settings(), samples(128, 32)), renderSeeds(scene, other, samples(128, 32), 2000),
+                  "lens");
 }
 
 // b is the mean luminance of the image; its error says how far off it may be.
@@ -196,7 +201,8 @@ TEST_P(MetropolisTest, hasNoStartUpBias) {
   few.metropolis.bootstrapSamples = 8192;
   few.metropolis.restartSteps = 3;
   RenderSettings other = defaults();
-  expectSameTruth(renderSeeds(scene, few, 96), renderSeeds(scene, other, 128, 2000), "restarts every third step");
+  expectSameTruth(renderSeeds(scene, few, samples(96, 32)), renderSeeds(scene, other, samples(128, 32), 2000),
+                  "restarts every third step");
 }
 
 // Bootstraps are as many as a render is long, so that b is never what limits it: over nine epochs its error falls to a
@@ -222,7 +228,8 @@ TEST_P(MetropolisTest, largeStepsAloneArePlainMonteCarlo) {
   RenderSettings independent = settings();
   independent.metropolis.largeStep = 1;
   RenderSettings other = defaults();
-  expectSameTruth(renderSeeds(scene, independent, 96), renderSeeds(scene, other, 96, 2000), "large steps");
+  expectSameTruth(renderSeeds(scene, independent, samples(96, 24)), renderSeeds(scene, other, samples(96, 24), 2000),
+                  "large steps");
   const auto session = Session::create(scene, independent);
   session->renderUntil(4, std::nullopt);
   EXPECT_EQ(session->statistics().chains->counters.proposedOf(Mutation::small), 0u);

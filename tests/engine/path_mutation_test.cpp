@@ -1,6 +1,7 @@
 // Metropolis light transport in path space: each kind of mutation by itself, and every kind of light.
 #include <gtest/gtest.h>
 
+#include "tests/effort.h"
 #include "tests/engine/light_scenes.h"
 #include "tests/engine/metropolis_settings.h"
 #include "tests/engine/test_scenes.h"
@@ -32,20 +33,21 @@ class PathMutationTest : public testing::TestWithParam<MutationCase> {
     uint64_t accepted = 0;
     for (const uint64_t count : chains.counters.accepted) accepted += count;
     EXPECT_GT(accepted, chains.mutations / 50);
-    expectSameTruth(renderSeeds(scene, chosen, mutations), renderSeeds(scene, other, 192, 2000), scene.name);
+    expectSameTruth(renderSeeds(scene, chosen, mutations), renderSeeds(scene, other, samples(192, 48), 2000),
+                    scene.name);
   }
 };
 
 TEST_P(PathMutationTest, aloneLeavesTheImageAsItIs) {
-  expectReference(sceneFile("cornell-diffuse", kWidth, kHeight), 128);
+  expectReference(sceneFile("cornell-diffuse", kWidth, kHeight), samples(128, 80));
 }
 
 TEST_P(PathMutationTest, aloneLeavesDeltaLobesAsTheyAre) {
-  expectReference(roomScene({.materials = RoomMaterials::mixed, .width = kWidth, .height = kHeight}), 128);
+  expectReference(roomScene({.materials = RoomMaterials::mixed, .width = kWidth, .height = kHeight}), samples(128, 80));
 }
 
 TEST_P(PathMutationTest, aloneLeavesInfiniteLightsAsTheyAre) {
-  expectReference(roomScene({.light = RoomLight::envmap, .width = kWidth, .height = kHeight}), 128);
+  expectReference(roomScene({.light = RoomLight::envmap, .width = kWidth, .height = kHeight}), samples(128, 80));
 }
 
 INSTANTIATE_TEST_SUITE_P(Engine, PathMutationTest,
@@ -66,7 +68,8 @@ TEST_P(PathSpaceLightTest, givesTheImageOfBidirectionalPathTracing) {
   RenderSettings chosen = metropolis(MetropolisVariant::pathspace), other = defaults();
   chosen.metropolis.directPass = false;
   other.method = Method::bpt;
-  expectSameTruth(renderSeeds(scene, chosen, 96), renderSeeds(scene, other, 96, 2000), "room");
+  expectSameTruth(renderSeeds(scene, chosen, samples(96, 24)), renderSeeds(scene, other, samples(96, 24), 2000),
+                  "room");
 }
 
 INSTANTIATE_TEST_SUITE_P(Engine, PathSpaceLightTest, testing::ValuesIn([] {

@@ -4,8 +4,10 @@
 // Everything else must agree exactly in the primitive, and in the point to a few units of rounding.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "tests/effort.h"
 #include "tests/kernels/intersectors.h"
@@ -18,7 +20,7 @@ constexpr double kPointError = 2e-5;  // in the same units: 300 units of roundin
 
 // How many rays a random scene meets depends on the scene, so that less work means fewer rays in as many scenes.
 constexpr size_t kScenes = 20;
-constexpr size_t kRaysPerScene = effort(RayBatch::kCapacity, 300);
+constexpr size_t kRaysPerScene = effort(RayBatch::kCapacity, 100);
 
 struct Crossing {
   double t;
@@ -26,8 +28,15 @@ struct Crossing {
   bool clear;  // rounding cannot turn it into a miss
 };
 
+struct Crossings {
+  std::array<Crossing, 2> list{};
+  size_t count = 0;
+  const Crossing* begin() const { return list.data(); }
+  const Crossing* end() const { return list.data() + count; }
+};
+
 // Where the ray's line crosses the primitive, near misses included.
-std::vector<Crossing> crossings(const PrimitiveRecord<double>& r, const TestRay& ray) {
+Crossings crossings(const PrimitiveRecord<double>& r, const TestRay& ray) {
   const Point p0{r.p0[0], r.p0[1], r.p0[2]};
   const auto at = [&](double t) { return ray.origin + ray.direction * t; };
   if (static_cast<PrimitiveKind>(r.kind) == PrimitiveKind::sphere) {
@@ -38,7 +47,7 @@ std::vector<Crossing> crossings(const PrimitiveRecord<double>& r, const TestRay&
     const double root = std::sqrt(std::max(discriminant, 0.0));
     const bool clear = discriminant > kNear * radius2;
     const double first = (-b - root) / a, second = (-b + root) / a;
-    return {{first, at(first), clear}, {second, at(second), clear}};
+    return {.list = {Crossing{first, at(first), clear}, Crossing{second, at(second), clear}}, .count = 2};
   }
   const Point e1{r.e1[0], r.e1[1], r.e1[2]}, e2{r.e2[0], r.e2[1], r.e2[2]}, n = cross(e1, e2);
   const double speed = dot(n, ray.direction);
@@ -49,7 +58,7 @@ std::vector<Crossing> crossings(const PrimitiveRecord<double>& r, const TestRay&
   const bool quad = static_cast<PrimitiveKind>(r.kind) == PrimitiveKind::quad;
   const double inside = quad ? std::min(std::min(u, 1 - u), std::min(v, 1 - v)) : std::min(std::min(u, v), 1 - u - v);
   if (inside < -kNear) return {};
-  return {{t, at(t), inside > kNear && std::abs(speed) > 0.02 * length(n)}};
+  return {.list = {Crossing{t, at(t), inside > kNear && std::abs(speed) > 0.02 * length(n)}}, .count = 1};
 }
 
 struct Reference {
@@ -60,10 +69,13 @@ struct Reference {
 
 // The closest crossing at t > 0; certain if no other choice lies within rounding.
 Reference closest(const std::vector<PrimitiveRecord<double>>& records, const TestRay& ray) {
+  std::vector<Crossings> crossed;
+  crossed.reserve(records.size());
+  for (const PrimitiveRecord<double>& record : records) crossed.push_back(crossings(record, ray));
   Reference best;
   double bestT = std::numeric_limits<double>::infinity();
   for (uint32_t i = 0; i < records.size(); ++i) {
-    for (const Crossing& c : crossings(records[i], ray)) {
+    for (const Crossing& c : crossed[i]) {
       if (c.t > 0 && c.clear && c.t < bestT) {
         bestT = c.t;
         best.primitive = i;
@@ -72,7 +84,7 @@ Reference closest(const std::vector<PrimitiveRecord<double>>& records, const Tes
     }
   }
   for (uint32_t i = 0; i < records.size(); ++i) {
-    for (const Crossing& c : crossings(records[i], ray)) {
+    for (const Crossing& c : crossed[i]) {
       const bool itself = i == best.primitive && c.t == bestT;
       const bool tooNear = std::abs(c.t) < kNear || std::abs(c.t - bestT) < kNear;
       const bool doubtful = !c.clear && c.t > -kNear && c.t < bestT + kNear;

@@ -113,7 +113,6 @@ class DataScene:
         text = renderers.with_exact_blends(ElementTree.tostring(root, encoding="unicode"))
         self.scene = mitsuba.load_string(text, **variables)
 
-    read_exr = renderers.MitsubaScene.read_exr
     write_exr = renderers.MitsubaScene.write_exr
 
     def render(self, spp, seeds):
@@ -152,7 +151,7 @@ def compare_scene(mitsuba, arguments, path):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     run = renderers.WavecrestRun(path, "pt", arguments.spp, size, options=words)
-    ours = np.stack([renderers.render_wavecrest(arguments.wavecrest, run, seed, folder, reference.read_exr) for seed in SEEDS])
+    ours = np.stack([renderers.render_wavecrest(arguments.wavecrest, run, seed, folder) for seed in SEEDS])
     theirs = reference.render(arguments.spp, SEEDS)
     verdict = image_statistics.compare(ours, theirs)
     if verdict.equal:

@@ -17,9 +17,10 @@ import exact_blend
 import picture_cache
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "scenes")]
 
-from mitsuba_support import scene_xml, variant  # noqa: E402  (the path has to be set first)
+import acceptance  # noqa: E402  (the path has to be set first)
+from mitsuba_support import scene_xml, variant  # noqa: E402
 
 RUSSIAN_ROULETTE_DEPTH = 5  # unbiased either way; the same so that noise is alike
 
@@ -36,10 +37,9 @@ def with_exact_blends(xml_text):
 
 
 class MitsubaScene:
-    """A scene loaded once and rendered with many seeds."""
+    """A scene loaded once, if at all, and rendered with many seeds."""
 
     def __init__(self, path, size, max_depth, defaults=None, any_filter=False):
-        self.mitsuba = start_mitsuba()
         text = scene_xml.flatten(path, size=size, defaults=defaults)
         if (kind := scene_xml.filter_type(text)) != "box" and not any_filter:
             raise ValueError(f"{path}: reconstruction filter '{kind}'; expected box for a comparison pixel by pixel")
@@ -52,6 +52,10 @@ class MitsubaScene:
         }
 
     @functools.cached_property
+    def mitsuba(self):  # it takes longer to start than a small picture, and whoever has a picture needs none
+        return start_mitsuba()
+
+    @functools.cached_property
     def scene(self):
         return self.mitsuba.load_string(self.text)
 
@@ -62,12 +66,15 @@ class MitsubaScene:
     def render(self, spp, seeds):
         return render_mitsuba(self.mitsuba, self.scene, self.integrator, spp, seeds)
 
-    def kept(self, spp, seeds, case=None):
-        """What render() returns or has returned; if committed for the case, pictures with the same means of tiles."""
+    def name_of_pictures(self, spp, seeds):
+        """The hash of all that the pictures follow from."""
         versions = [importlib.metadata.version(package) for package in ("mitsuba", "drjit")]
         blend = pathlib.Path(exact_blend.__file__).read_text(encoding="utf-8")
-        name = picture_cache.name_of(self.text, self.path, spp, list(seeds), versions, blend)
-        return picture_cache.kept(name, lambda: self.render(spp, seeds), case)
+        return picture_cache.name_of(self.text, self.path, spp, list(seeds), versions, blend)
+
+    def kept(self, spp, seeds, case=None):
+        """What render() returns or has returned; if committed for the case, pictures with the same means of tiles."""
+        return picture_cache.kept(self.name_of_pictures(spp, seeds), lambda: self.render(spp, seeds), case)
 
     def read_exr(self, path):
         bitmap = self.mitsuba.Bitmap(str(path))
@@ -108,12 +115,12 @@ class WavecrestRun:
         return [str(word) for word in words]
 
 
-def render_wavecrest(program, run, seed, folder, read_exr):
+def render_wavecrest(program, run, seed, folder):
     """Runs the program, leaving its image in the folder."""
-    output = str(folder / f"wavecrest-{seed}.exr")
+    output = str(folder / f"wavecrest-{seed}.pfm")
     command = [program, "render", run.scene, *run.words(), "--seed", str(seed), "--progress", "none", "-o", output]
     subprocess.run(command, check=True)
-    return read_exr(output)
+    return acceptance.read_pfm(output).astype(np.float32)
 
 
 def render_seeds(renders, run, seeds, shape):

@@ -1,9 +1,10 @@
-"""`wavecrest report` on Mitsuba's own EXRs beside ours: its scores are those of `wavecrest compare`.
+"""`wavecrest report` on Mitsuba's own EXRs beside ours: its scores are those of `wavecrest compare`. Mitsuba reads our EXR.
 
     report_test.py --wavecrest PROGRAM --out FOLDER
 
 Mitsuba renders one of our scenes at two lengths and writes half and single precision; a longer render of it is the
-reference. Its images lie beside one run of ours with statistics, and one report shows both.
+reference. Its images lie beside one run of ours with statistics, and one report shows both. Of our EXR Mitsuba reads the
+pixels of the PFM that the same run writes.
 """
 
 import argparse
@@ -14,6 +15,8 @@ import shutil
 import subprocess
 import sys
 import time
+
+import numpy as np
 
 import renderers
 
@@ -28,9 +31,8 @@ def run(*words):
     return subprocess.run([str(word) for word in words], check=True, capture_output=True, text=True).stdout
 
 
-def write_mitsubas(folder):
+def write_mitsubas(scene, folder):
     """Images of Mitsuba named after their render times; returns their names by time."""
-    scene = renderers.MitsubaScene(renderers.ROOT / "scenes" / f"{SCENE}.xml", SIZE, MAX_DEPTH, any_filter=True)
     mitsuba = scene.mitsuba
     names = {}
     for seed, (spp, kind) in enumerate(((4, mitsuba.Struct.Type.Float16), (32, mitsuba.Struct.Type.Float32)), 1):
@@ -53,15 +55,19 @@ def main():
     folder = arguments.out / "report"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    images = write_mitsubas(folder)
+    scene = renderers.MitsubaScene(renderers.ROOT / "scenes" / f"{SCENE}.xml", SIZE, MAX_DEPTH, any_filter=True)
+    images = write_mitsubas(scene, folder)
+    pfm = arguments.out / "pt.pfm"  # not one of the report's images
     run(arguments.wavecrest, "render", SCENE, "--size", f"{SIZE[0]}x{SIZE[1]}", "--max-depth", MAX_DEPTH, "--spp", 16,
-        "-o", folder / "pt.exr", "--stats", folder / "pt.json")  # fmt: skip
+        "-o", folder / "pt.exr", "-o", pfm, "--stats", folder / "pt.json")  # fmt: skip
     run(arguments.wavecrest, "report", folder, "--csv")
     found = {}
     with open(folder / "measurements.csv", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             found.setdefault((row["method"], float(row["seconds"])), {})[row["metric"]] = row["value"]
     wrong = []
+    if not np.allclose(scene.read_exr(folder / "pt.exr"), renderers.acceptance.read_pfm(pfm), rtol=1e-6, atol=0):
+        wrong.append("Mitsuba reads other pixels from pt.exr than pt.pfm has")
     if {method for method, _ in found} != {"mitsuba", "pt"} or len(found) != 3:
         wrong.append(f"the report has {sorted(found)}; expected two images of mitsuba and one of pt")
     for seconds, name in images.items():

@@ -1,6 +1,7 @@
 """Tests of the oracle harness itself: an oracle that cannot fail, or that cries wolf, is worth nothing."""
 
 import functools
+import json
 import os
 import pathlib
 import re
@@ -17,6 +18,7 @@ import picture_cache
 import renderers
 
 SCENES = renderers.ROOT / "tests" / "oracle" / "scenes"
+GROUPS = json.loads(pathlib.Path(oracle_test.__file__).with_name("cases.json").read_text(encoding="utf-8"))["groups"]
 
 
 def noise(generator, renders, shape=(24, 32, 3), mean=1.0, deviation=0.3):
@@ -166,7 +168,7 @@ class Kept(unittest.TestCase):
         generator = np.random.default_rng(9)
         ours, theirs = noise(generator, 16), noise(generator, 16)
         mitsuba = mock.Mock()
-        renders = {"render_seeds": mock.Mock(return_value=ours), "render_wavecrest": mock.Mock(return_value=ours[0])}
+        renders = {"render_seeds": mock.Mock(return_value=ours)}
         case = oracle_test.Case("case", pathlib.Path("case.xml"), 1, ["pt"])
         for pictures, equal in ((theirs, True), (theirs + 1, False)):
             mitsuba.kept.return_value = pictures
@@ -177,8 +179,42 @@ class Kept(unittest.TestCase):
         np.testing.assert_array_equal(written["mitsuba.exr"], pictures.mean(0))
 
 
+class Written(unittest.TestCase):
+    """What the program writes beside oracle_renders."""
+
+    def test_another_image_than_that_of_oracle_renders_fails(self):
+        ours = noise(np.random.default_rng(10), 16)
+        case = oracle_test.Case("case", pathlib.Path("case.xml"), 1, ["pt", "lt"], written=["pt"])
+        renders = {"render_seeds": mock.Mock(return_value=ours), "render_wavecrest": mock.Mock(return_value=ours[1])}
+        with tempfile.TemporaryDirectory(prefix="wavecrest_oracle_") as folder:
+            with mock.patch.multiple(renderers, **renders):
+                arguments = (mock.Mock(), ours, pathlib.Path(folder))
+                with self.assertRaises(SystemExit) as ended:
+                    oracle_test.same_picture(mock.Mock(), case, "pt", *arguments)
+                self.assertIn("another image than oracle_renders", str(ended.exception))
+                self.assertTrue(oracle_test.same_picture(mock.Mock(), case, "lt", *arguments), "lt is not written")
+
+    def test_each_case_by_its_first_method_and_each_method_of_a_group_is(self):
+        for group in GROUPS:
+            cases = oracle_test.read_cases(group["name"])
+            for case in cases:
+                self.assertEqual(case.written[0], case.methods[0], case.name)
+            written = {method for case in cases for method in case.written}
+            self.assertEqual(written, {method for case in cases for method in case.methods}, group["name"])
+
+
 class Committed(unittest.TestCase):
     """The files that are committed."""
+
+    def test_each_case_but_long_ones_has_the_means_of_todays_pictures(self):
+        # Otherwise Mitsuba renders the scene anew, and each run takes longer.
+        for group in GROUPS:
+            if group.get("labels") == "long":
+                continue
+            for case in oracle_test.read_cases(group["name"]):
+                with self.subTest(case.name), np.load(picture_cache.COMMITTED / f"{case.name}.npz") as file:
+                    today = case.in_mitsuba().name_of_pictures(case.spp, oracle_test.SEEDS)
+                    self.assertEqual(str(file["name"]), today, "ORACLE_COMMIT=1 writes it anew")
 
     def test_each_is_of_one_case(self):
         cases = [case.name for case in oracle_test.read_cases()]
@@ -195,6 +231,7 @@ class Committed(unittest.TestCase):
             self.assertNotIn(str(renderers.ROOT), without_files(text), case.name)
 
 
+@unittest.skipUnless(os.environ.get("ORACLE_LIVE"), "80 pictures, and no code of wavecrest")
 class MitsubaAgainstItself(unittest.TestCase):
     """With the real oracle and the sizes of the real tests."""
 
