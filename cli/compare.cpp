@@ -82,7 +82,7 @@ void noteWindows(const CompareOptions& options, const ImageFile& reference, cons
       options.reference, x, y, file, testX, testY);
 }
 
-// A note where an image is brighter than what the PU21 metrics tell apart. Excluded pixels are not counted.
+// A note where an image is brighter than what the PU21 metrics tell apart. Pixels that are not finite are not counted.
 void notePu21Range(const CompareOptions& options, const std::vector<const Metric*>& metrics, const std::string& file,
                    const ImageFile& image) {
   const bool measured =

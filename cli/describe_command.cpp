@@ -43,11 +43,9 @@ std::vector<CompletionWords> completionWords() {
   std::vector<std::string_view> samplersOrAuto = samplers;
   samplersOrAuto.push_back("auto");
   for (const Metric& metric : metricList()) metrics.push_back(metric.name);
-  // A reference's method may also be chosen by the program, but not by trials.
+  // A reference's method may also be chosen by the program.
   std::vector<std::string_view> referenceMethods{"auto"};
-  for (const MethodEntry& entry : kMethods) {
-    if (!isChosenByTrials(entry.method)) referenceMethods.push_back(entry.name);
-  }
+  referenceMethods.insert(referenceMethods.end(), methods.begin(), methods.end());
   return {named({"--method", "--methods"}, methods),
           named({"--methods"}, campaignMethodNames(), "converge"),
           named({"--method"}, referenceMethods, "reference"),

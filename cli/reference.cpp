@@ -21,6 +21,7 @@
 #include "cli/scene_options.h"
 #include "engine/inspect/path_classes.h"
 #include "engine/plan/render_settings.h"
+#include "engine/session/session.h"
 #include "library/option_ranges.h"
 #include "library/option_values.h"
 #include "scenes/scene_list.h"
@@ -80,11 +81,7 @@ class AdvanceLine {
 // The method that was named, or the one that suits the scene's path classes (METHODS 8.3).
 ReferenceChoice chosenMethod(const ReferenceOptions& options, const Scene& scene) {
   if (options.method == "auto") return classifyPaths(scene).reference;
-  const Method method = parseMethodOption("--method", options.method);
-  if (isChosenByTrials(method)) {
-    throw UsageError(fmt::format("--method {}: trials choose another method; expected that method", options.method));
-  }
-  return {.method = method, .biased = false, .reason = "asked for"};
+  return {.method = parseMethodOption("--method", options.method), .biased = false, .reason = "asked for"};
 }
 
 // Settings of both halves. settings.seed becomes a seed for each of them (referenceSeed).
@@ -98,8 +95,8 @@ RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, 
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   if (options.radius != kReferenceRadius && !mergesPaths(method)) {
-    const auto has = [](Method one) { return mergesPaths(one) && !isChosenByTrials(one); };
-    throw UsageError(fmt::format("--radius: {} does not merge; expected {}", toString(method), methodsWith(has)));
+    throw UsageError(
+        fmt::format("--radius: {} does not merge; expected {}", toString(method), methodsWith(mergesPaths)));
   }
   settings.radius = options.radius;
   settings.roulette = Roulette::efficiency;  // another roulette has the same limit, so any reference can go on
@@ -171,8 +168,13 @@ int runReference(const ReferenceOptions& options) {
   const Scene scene = loadScene(options.scene, kind);
   printNotes(scene, kind);
   for (const std::string& file : scene.files) files.input("the scene", file);
-  const ReferenceChoice method = chosenMethod(options, scene);
-  const RenderSettings settings = settingsFor(options, scene, method.method);
+  ReferenceChoice method = chosenMethod(options, scene);
+  RenderSettings settings = settingsFor(options, scene, method.method);
+  // A reference says by what it was rendered, and so whether it is biased.
+  if (isChosenByTrials(method.method)) {
+    settings.method = Session::create(scene, settings)->statistics().renderedBy(method.method);
+    method = {.method = settings.method, .biased = false, .reason = "chosen by the trials of " + options.method};
+  }
   const std::unique_ptr<const Reference> other = otherReference(options, scene);
   noteLine(kind, {{"method", toString(method.method)}, {"reason", method.reason}},
            fmt::format("{} by {}: {}", scene.name, toString(method.method), method.reason));
@@ -265,12 +267,8 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
   command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
   command.addFlag("--quiet", options->quiet, "print the result only: neither progress nor notes");
   command.run([options, command, &exitCode] {
-    // Words of variables that are for `render` alone: a sampler by method, and a method by trials.
-    const ReferenceOptions byDefault{};
-    if (options->sampler == "auto" && command.fromVariable("--sampler")) options->sampler = byDefault.sampler;
-    if (options->method == toString(Method::evcm) && command.fromVariable("--method")) {
-      options->method = byDefault.method;
-    }
+    // The variable's auto is for `render`.
+    if (options->sampler == "auto" && command.fromVariable("--sampler")) options->sampler = ReferenceOptions().sampler;
     exitCode = runReference(*options);
   });
 }

@@ -212,7 +212,7 @@ void RenderRun::load() {
   checkOutputs(names_, scene_.files, options_.until.reference);
   loadSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const bool measures = settings_.measureStages;
-  settings_ = ranks_.share(resolved(options_, scene_), filmOutline(scene_.film), kind_);
+  settings_ = ranks_.share(resolved(options_, scene_), scene_, kind_);
   settings_.measureStages = measures;
   if (earlier_) earlier_->cutAlike(settings_);
   if (options_.pin) settings_.placement = pinnedPlacement(settings_.threads, kind_);

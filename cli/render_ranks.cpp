@@ -18,9 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// Of a pixel: the sum of all processes, and the contributions of this one and of another that wait for it.
-constexpr uint64_t kBytesOfSums = 3 * 80;
-
 // Checkpoints of the same name that other numbers of processes have left; empty: none.
 std::string sharesOfOthers(const std::string& file, uint32_t count) {
   const fs::path path = fs::path(file);
@@ -96,7 +93,7 @@ void RenderRanks::adapt(RenderOptions& options) {
   }
 }
 
-RenderSettings RenderRanks::share(const RenderSettings& settings, const FilmArea& film, ProgressKind kind) const {
+RenderSettings RenderRanks::share(const RenderSettings& settings, const Scene& scene, ProgressKind kind) const {
   if (!several()) return settings;
   if (settings.method == Method::mlt) {
     if (settings.metropolis.chains < ranks_->count()) {
@@ -114,7 +111,7 @@ RenderSettings RenderRanks::share(const RenderSettings& settings, const FilmArea
   }
   RenderSettings own = settingsOfJointShare(settings, ranks_->rank(), ranks_->count());
   // The budget is of all that a process takes.
-  const uint64_t sums = kBytesOfSums * film.size();
+  const uint64_t sums = bytesOfSums(scene, own, ranks_->count());
   if (own.memoryBytes && *own.memoryBytes <= sums) {
     throw UsageError(fmt::format("--memory: the sums of several processes take {:.1f} MB; expected more than that",
                                  static_cast<double>(sums) / 1e6));

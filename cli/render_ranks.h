@@ -35,7 +35,7 @@ class RenderRanks {
   // the first alone. Throws UsageError for options that several processes cannot have.
   void adapt(RenderOptions& options);
   // The settings of this process' share.
-  RenderSettings share(const RenderSettings& settings, const FilmArea& film, ProgressKind kind) const;
+  RenderSettings share(const RenderSettings& settings, const Scene& scene, ProgressKind kind) const;
   // Has all processes cut paths as the first one does: last bits may depend on it.
   void cutAlike(RenderSettings& settings);
   // Runs a step that every process runs. Where it fails in one, the first says so, and all throw SharedFailure.

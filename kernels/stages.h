@@ -143,7 +143,7 @@ struct StageCounters {
   uint64_t saturatedSplats = 0;  // too large for the film's sums, which hold their limit instead
   uint64_t connections = 0, merges = 0, lightVertices = 0;
   uint64_t closePairs = 0;   // pairs of vertices too close to be told apart, which are not connected
-  uint64_t cutPaths = 0;     // paths that the limit of edges has ended at a surface,
+  uint64_t cutPaths = 0;     // paths that the limit of edges has ended,
   double cutThroughput = 0;  // and what they carried together, in units of a path's beginning
 
   StageCounters& operator+=(const StageCounters& other) {

@@ -127,7 +127,11 @@ class Campaign {
       const size_t missing = missingRuns(entry, methods);
       plan.runs += methods.size() * settings_.seeds;
       plan.done += methods.size() * settings_.seeds - missing;
-      if (missing == 0) continue;
+      if (missing == 0) {
+        // Names of -D are those of all the campaign's scenes, of which a shard may have a few.
+        if (methods.empty() && !settings_.definitions.empty()) load(entry);
+        continue;
+      }
       ahead += static_cast<double>(missing) * pace_.ofRun(entry);
       if (hasReference(entry)) continue;
       plan.unreferenced.push_back(entry.name);

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "bench/claims/comparison.h"
 #include "bench/claims/study.h"
 
 namespace wavecrest {
@@ -80,7 +81,7 @@ std::string unequalRuns(const std::set<std::string>& methods, const SceneLosses&
     }
   }
   if (shortest != longest) {
-    return fmt::format("runs of {:.3g} s and of {:.3g} s stand side by side", *shortest, *longest);
+    return fmt::format("runs of {} and of {} stand side by side", secondsText(*shortest), secondsText(*longest));
   }
   if (processors.size() < 2) return "";
   return fmt::format("runs of two processors stand side by side: {}", fmt::join(processors, " and "));

@@ -44,6 +44,10 @@ Comparison middle(std::vector<Comparison> all) {
   return all[all.size() / 2];
 }
 
+std::string secondsText(double seconds) {
+  return seconds < 100 ? fmt::format("{:.3g} s", seconds) : fmt::format("{:.0f} s", seconds);
+}
+
 std::string nameOf(const std::string& metric) {
   if (metric == "ssim") return "SSIM";
   if (metric == "q_mos") return "Q_MOS";

@@ -36,6 +36,9 @@ double meanOfLog(std::span<const double> logarithms);
 // " ± 0.02"; nothing where no width is known, or where equal values have none.
 std::string plusMinus(double halfWidth);
 
+// "59.4 s", "1440 s": three digits, or all before the point.
+std::string secondsText(double seconds);
+
 // A metric in print.
 std::string nameOf(const std::string& metric);
 

@@ -206,6 +206,12 @@ class Judge {
         const std::optional<ReachedLater> later = reachedLater(scene_, method, metric, condition_.score);
         if (later) result = {V::notReached, -later->seconds, value + "; " + later->text};
       }
+      // Where an image without error would miss the score as well, missing it says nothing of the method.
+      const std::optional<double> floor = scene_.floorLoss(metric);
+      if (floor && *floor > lossOf(metric, condition_.score) && result.verdict != (reaches ? V::holds : V::fails)) {
+        result = {V::notJudged, 0,
+                  fmt::format("{}; the reference's noise alone gives {:.3g}", value, scoreOfLoss(metric, *floor))};
+      }
       add(result);
     }
   }
@@ -215,7 +221,12 @@ class Judge {
     // The error of every control has to fall faster than the limit.
     std::string controls;
     for (const std::string& method : condition_.than) {
-      if (scene_.errorSlopes(method).empty()) continue;
+      if (!measured(method)) continue;
+      if (scene_.errorSlopes(method).empty()) {
+        add({V::notJudged, 0,
+             fmt::format("no error of the control, {}, without the reference's noise was measured", shown(method))});
+        continue;
+      }
       const Band band = scene_.slopeBand(method);
       note(fmt::format("slope of {} {:.2f}{}", shown(method), band.mean, plusMinus(band.halfWidth)));
       controls += fmt::format(", control {} {:.2f}", shown(method), band.mean);

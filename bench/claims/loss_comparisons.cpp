@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -33,9 +34,12 @@ Comparison LossComparisons::largerLoss(const std::string& metric, const std::str
                   scene_.rowOf(b), meanBand(scene_.scores(b, metric)).mean);
   if (factor != 1)
     text += fmt::format(", losses {:.2g} : 1, limit {:g}", meanOfLog(lossesA) / meanOfLog(lossesB), factor);
-  Comparison result = above(scene_.lossDifference(metric, a, b), std::log(factor), text);
-  // Where even the larger one is mostly noise of the reference, the true losses may differ by any factor.
-  if (result.verdict != V::holds && nearFloor(metric, lossesA) && nearFloor(metric, lossesB)) {
+  const Band difference = scene_.lossDifference(metric, a, b);
+  Comparison result = above(difference, std::log(factor), text);
+  // Where even the larger one is mostly noise of the reference, the true losses may differ by any factor, but in the
+  // direction that the measured ones show.
+  const bool smaller = difference.mean < -difference.halfWidth;
+  if (result.verdict != V::holds && !smaller && nearFloor(metric, lossesA) && nearFloor(metric, lossesB)) {
     result.verdict = V::notJudged;
     result.text +=
         fmt::format("; the reference's noise alone gives {:.3g}", scoreOfLoss(metric, *scene_.floorLoss(metric)));
@@ -66,10 +70,20 @@ Comparison LossComparisons::faster(const std::string& metric, const std::string&
   }
   Comparison result =
       above(band, 0,
-            fmt::format("to {} {:.3g} {} takes {:.3g} s, {} {:.3g} s", nameOf(metric), scoreOfLoss(metric, loss),
-                        scene_.rowOf(a), meanOfLog(timesA), scene_.rowOf(b), meanOfLog(timesB)));
-  if (result.margin == 0) result.verdict = V::undecided;  // both have it at their first snapshots
-  if (result.verdict != V::holds && nearFloor(metric, lossesA) && nearFloor(metric, lossesB)) {
+            fmt::format("to {} {:.3g} {} takes {}, {} {}", nameOf(metric), scoreOfLoss(metric, loss), scene_.rowOf(a),
+                        secondsText(meanOfLog(timesA)), scene_.rowOf(b), secondsText(meanOfLog(timesB))));
+  // A seed that has the loss at its first snapshot may have had it sooner, so its method is not shown to be slower.
+  const auto isUpperBound = [&](const std::string& method, const std::vector<double>& times) {
+    const std::vector<double> first = scene_.logTimes(method, metric, std::numeric_limits<double>::infinity());
+    for (size_t i = 0; i < times.size(); ++i) {
+      if (times[i] <= first[i]) return true;
+    }
+    return false;
+  };
+  const bool open = (result.verdict == V::holds && isUpperBound(b, timesB)) ||
+                    (result.verdict == V::fails && isUpperBound(a, timesA));
+  if (open || result.margin == 0) result.verdict = V::undecided;
+  if (result.verdict == V::undecided && nearFloor(metric, lossesA) && nearFloor(metric, lossesB)) {
     result.verdict = V::notJudged;
     result.text += "; that is the reference's own noise";
   }

@@ -23,7 +23,8 @@ class LossComparisons {
   Comparison smallerLoss(const std::string& metric, const std::string& a, const std::string& b) const;
   // Whether the loss of `a` is within the factor of that of `b`.
   Comparison notLarger(const std::string& metric, const std::string& a, const std::string& b, double factor) const;
-  // Takes the best loss that both methods reach. Compares the time that each needs to get there.
+  // Takes the best loss that both methods reach. Compares the time that each needs to get there. Undecided where the
+  // slower one has it at a first snapshot, as its time is only an upper bound.
   Comparison faster(const std::string& metric, const std::string& a, const std::string& b) const;
   // Whether `a` is further behind `b` here than in the control, by the factor.
   Comparison worseHere(const std::string& metric, const std::string& a, const std::string& b,

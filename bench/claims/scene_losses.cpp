@@ -110,7 +110,7 @@ std::string SceneLosses::missing(const std::string& method) const {
   for (const RunRecord& run : results_.runs) {
     if (run.scene != scene_ || run.method != row) continue;
     if (run.state == RunState::done && !run.snapshots.empty()) return "";
-    gap = row + " was refused";
+    if (run.state == RunState::refused) gap = row + " was refused";
   }
   return gap;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <asio.hpp>
 #include <charconv>
+#include <exception>
 #include <list>
 #include <stdexcept>
 #include <string>
@@ -110,9 +111,17 @@ class LiveNetwork::Connections {
   Connections(LiveServer& server, const HostPort& address) : server_(server), host_(address.host) { listen(address); }
 
   HostPort bound() const { return {host_, acceptor_.local_endpoint().port()}; }
+  // What a handler throws, as where memory is short, costs the connection that it served.
   void run() {
     accept();
-    io_.run();
+    for (;;) {
+      try {
+        io_.run();
+        return;
+      } catch (const std::exception&) {
+        // run() may be called again: the other handlers are still there.
+      }
+    }
   }
   void wake() {
     asio::post(io_, [this] {
@@ -143,10 +152,14 @@ class LiveNetwork::Connections {
   // Accepts one connection after the other, with a pause now and then. Without descriptors it tries again later.
   void accept() {
     acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
+      if (!error && ++accepted_ % kAcceptedAtOnce != 0) {
+        accept();
+      } else {
+        pause_.expires_after(std::chrono::milliseconds(1000) * kAcceptedAtOnce / kMostAccepted);
+        pause_.async_wait([this](const error_code&) { accept(); });
+      }
+      // Last, as it may throw.
       if (!error) welcome(std::move(socket));
-      if (!error && ++accepted_ % kAcceptedAtOnce != 0) return accept();
-      pause_.expires_after(std::chrono::milliseconds(1000) * kAcceptedAtOnce / kMostAccepted);
-      pause_.async_wait([this](const error_code&) { accept(); });
     });
   }
 

@@ -34,7 +34,7 @@ class LiveNetwork {
 
   // The address with the port that the system has chosen.
   HostPort bound() const;
-  // Answers until stop(). The calling thread is the network's.
+  // Answers until stop(). The calling thread is the network's. Throws nothing: an error ends one connection.
   void run();
   // From any thread: there is news for readers of events.
   void wake();

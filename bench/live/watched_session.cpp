@@ -108,13 +108,14 @@ void WatchedSession::renderWatched(std::optional<uint64_t> iterations, std::opti
     session_->renderUntil(earlier(iterations, slice), earlier(seconds, std::optional(due)));
     if (session_->interrupted()) return;
 
-    // Find out which limit ended it. A look changes nextLook_, so `due` keeps its value.
+    // Find out which limit ended it.
     const uint64_t done = session_->statistics().iterations;
     const bool sliceReached = slice && done == *slice, allDone = iterations && done >= *iterations;
     // Otherwise the time ended it: chains may end a moment before theirs, where another step does not fit in.
     const bool timeEnded = !sliceReached && !allDone;
     if (sliceReached) addSlice(done);
-    if (timeEnded || session_->progressSeconds() >= due) look(false);
+    // A look changes nextLook_: where slices have just begun with one, another is not due yet.
+    if (nextLook_ == due && (timeEnded || session_->progressSeconds() >= due)) look(false);
     if (allDone || (seconds && ((timeEnded && *seconds <= due) || session_->progressSeconds() >= *seconds))) return;
   }
 }

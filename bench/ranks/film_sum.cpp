@@ -4,6 +4,10 @@
 
 #include <algorithm>
 
+#include "bench/ranks/sum_tree.h"
+#include "engine/chains/epochs.h"
+#include "engine/compile/compiled_scene.h"
+#include "engine/plan/render_plan.h"
 #include "engine/state/state_stream.h"
 
 namespace wavecrest {
@@ -12,11 +16,13 @@ namespace {
 // What chains have done, as a contribution has it.
 void saveChains(StateWriter& out, const ChainStatistics& chains) {
   static_assert(sizeof(ChainCounters) == (2 * kMutationKinds + 4) * sizeof(uint64_t), "padding would be sent");
+  static_assert(sizeof(LargeStepSums) == 3 * LargeStepSums::kLengths * sizeof(double), "padding would be sent");
   static_assert(sizeof(StuckChain) == 4 * sizeof(uint32_t), "padding would be sent");
   out.value(chains.mutations);
   out.value(chains.directPaths);
   out.value(chains.epochs);
   out.value(chains.counters);
+  out.value(chains.largeSteps);
   out.list(chains.stuck);
 }
 
@@ -25,14 +31,30 @@ void addSavedChains(ChainStatistics& sum, StateReader& in) {
   sum.directPaths += in.value<uint64_t>();
   sum.epochs = std::max(sum.epochs, in.value<uint64_t>());
   sum.counters += in.value<ChainCounters>();
+  sum.largeSteps += in.value<LargeStepSums>();
   const auto stuck = in.list<StuckChain>();
   sum.stuck.insert(sum.stuck.end(), stuck.begin(), stuck.end());
 }
 
+// What a contribution has besides pixels, or a little more.
+constexpr size_t kRest = 1 << 16;
+constexpr size_t kSplatBytes = 3 * sizeof(__int128);  // of a pixel
+
 // Bytes of a film's state, or a little more.
 size_t stateBytes(const Film& film) {
-  constexpr size_t kRest = 1 << 16;
-  return film.bytes() + (film.hasSplats() ? film.area().size() * 3 * sizeof(__int128) : 0) + kRest;
+  return film.bytes() + (film.hasSplats() ? film.area().size() * kSplatBytes : 0) + kRest;
+}
+
+// The same of a film that is not there yet, or a little more: as if chains had a direct pass, and trials chose splats.
+uint64_t stateBytes(const Scene& scene, const RenderSettings& settings) {
+  const FilmSettings& film = settings.filmOf(scene);
+  const FilmArea area = filmOutline(film);
+  const CameraView camera = compileCamera(scene.sensor, film);
+  const bool spreads = settings.filterMode == FilterMode::spread && canSpread(camera);
+  const bool chains = settings.method == Method::mlt, splats = chains || strategiesOf(settings.method).camera;
+  const uint64_t ofPixel = sizeof(uint64_t) + (spreads ? 0 : 3 * sizeof(double)) + (splats ? kSplatBytes : 0);
+  return area.bytes() + area.size() * ofPixel + (spreads ? SpreadSums::bytesFor(camera, area) : 0) +
+         (chains ? settings.metropolis.chains * sizeof(PendingSplat) : 0) + kRest;
 }
 
 }  // namespace
@@ -72,6 +94,11 @@ std::vector<unsigned char> contributionOf(const Session& session, const ProcessR
     session.film().save(out);
   };
   return savedBytes(save, head, stateBytes(session.film()));
+}
+
+uint64_t bytesOfSums(const Scene& scene, const RenderSettings& settings, uint32_t ranks) {
+  // The first process has the most children, one more than any other at least, and sends no sum on.
+  return (2 + SumTree(0, ranks).children().size()) * stateBytes(scene, settings);
 }
 
 void FilmSum::sumUp(const std::vector<Bytes>& contributions) {
@@ -136,6 +163,9 @@ RenderStatistics FilmSum::statistics(RenderStatistics own) const {
   chains.directPaths = chains_.directPaths;
   chains.epochs = chains_.epochs;
   chains.counters = chains_.counters;
+  // Each process has traced all bootstraps, and large steps of its own chains.
+  chains.largeSteps = chains_.largeSteps;
+  poolBrightness(chains);
   // The worst of all.
   chains.stuck = chains_.stuck;
   std::sort(chains.stuck.begin(), chains.stuck.end(),

@@ -33,6 +33,11 @@ ProcessRecord recordOf(uint32_t rank, uint32_t threads, const RenderStatistics& 
 // be running.
 std::vector<unsigned char> contributionOf(const Session& session, const ProcessRecord& record, size_t head = 0);
 
+// Bytes that a sum takes in any of so many processes at most: its own contribution, one of each child in the tree
+// (sum_tree.h), the film of the sum, and behind the first process the sum as it is sent on. The same for all, as the
+// number of light paths may follow from the memory that is left.
+uint64_t bytesOfSums(const Scene& scene, const RenderSettings& settings, uint32_t ranks);
+
 class FilmSum {
  public:
   using Bytes = std::span<const unsigned char>;
@@ -54,7 +59,7 @@ class FilmSum {
   std::unique_ptr<Film> film_;
   WorkDone work_;
   std::vector<ProcessRecord> processes_;
-  ChainStatistics chains_;  // of mlt: counts, and chains that are stuck; what all processes have in common is not here
+  ChainStatistics chains_;  // of mlt: counts, large steps, stuck chains; not what all processes have in common
 };
 
 }  // namespace wavecrest

@@ -46,7 +46,7 @@ Mailbox::Mailbox(const MpiFunctions& mpi) : mpi_(mpi), thread_([this] { run(); }
   throw RanksError("MPI cannot be started");
 }
 
-Mailbox::~Mailbox() { end(Ending::abandon); }
+Mailbox::~Mailbox() { abandon(); }
 
 void Mailbox::open(Duties duties) {
   {
@@ -65,6 +65,8 @@ void Mailbox::post(uint32_t to, Bytes message) {
 }
 
 void Mailbox::finish() { end(Ending::finish); }
+
+void Mailbox::abandon() { end(Ending::abandon); }
 
 void Mailbox::end(Ending ending) {
   if (!thread_.joinable()) return;
@@ -98,7 +100,7 @@ void Mailbox::work() {
     const bool sent = sendAll(), received = duties_.received && receiveAll();
     if (duties_.tick && Clock::now() - lastTick >= kTick) {
       lastTick = Clock::now();
-      duties_.tick();
+      guarded([&] { duties_.tick(); });
     }
     std::unique_lock<std::mutex> lock(mutex_);
     if (!posted_.empty()) continue;
@@ -121,6 +123,17 @@ void Mailbox::work() {
   }
 }
 
+// Runs a step that may throw, as where memory is short: an exception that left the thread would end the process before
+// it has saved anything.
+template <class Step>
+void Mailbox::guarded(Step step) {
+  try {
+    step();
+  } catch (const std::exception& error) {
+    if (duties_.failed) duties_.failed(error);
+  }
+}
+
 // Begins to send what was posted and looks what has been sent. Returns whether anything was.
 bool Mailbox::sendAll() {
   std::deque<Letter> posted;
@@ -131,28 +144,36 @@ bool Mailbox::sendAll() {
   bool any = false;
   for (Letter& letter : posted) {
     any = true;
-    if (letter.to == rank_) {
-      if (duties_.received) duties_.received(rank_, std::move(letter.bytes));
-      continue;
-    }
-    underWay_.push_back({letter.to, inBlocks(std::move(letter.bytes))});
-    Letter& last = underWay_.back();
-    // What cannot be sent has nobody to receive it.
-    if (mpi_.send(last.to, last.bytes.data(), last.bytes.size() / kMpiBlock, &last.request) < 0) underWay_.pop_back();
+    guarded([&] {
+      if (letter.to == rank_) {
+        if (duties_.received) duties_.received(rank_, std::move(letter.bytes));
+        return;
+      }
+      underWay_.push_back({letter.to, inBlocks(std::move(letter.bytes))});
+      Letter& last = underWay_.back();
+      // What cannot be sent has nobody to receive it.
+      if (mpi_.send(last.to, last.bytes.data(), last.bytes.size() / kMpiBlock, &last.request) < 0) underWay_.pop_back();
+    });
   }
   any |= std::erase_if(underWay_, [&](Letter& letter) { return mpi_.sent(&letter.request) != 0; }) != 0;
   return any;
 }
 
+// Receives what has arrived. A message that finds no memory stays with MPI until the next look.
 bool Mailbox::receiveAll() {
   bool any = false;
   int from = 0;
   uint64_t blocks = 0;
   while (mpi_.arrived(&from, &blocks) == 1) {
-    Bytes bytes(blocks * kMpiBlock);
-    if (mpi_.receive(from, bytes.data(), blocks) < 0) break;
+    bool taken = false;
+    guarded([&] {
+      Bytes bytes(blocks * kMpiBlock);
+      if (mpi_.receive(from, bytes.data(), blocks) < 0) return;
+      taken = true;
+      duties_.received(static_cast<uint32_t>(from), fromBlocks(std::move(bytes)));
+    });
+    if (!taken) break;
     any = true;
-    duties_.received(static_cast<uint32_t>(from), fromBlocks(std::move(bytes)));
   }
   return any;
 }

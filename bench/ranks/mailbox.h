@@ -9,6 +9,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -21,16 +22,17 @@ namespace wavecrest {
 class Mailbox {
  public:
   using Bytes = std::vector<unsigned char>;
-  // Both are called on the mailbox' thread. received: a message, also of this process to itself. tick: now and then.
+  // All are called on the mailbox' thread. received: a message, also of this process to itself. tick: now and then.
+  // failed: one of these two has thrown, or there was no memory for a message. The mailbox goes on.
   struct Duties {
     std::function<void(uint32_t from, Bytes message)> received;
     std::function<void()> tick;
+    std::function<void(const std::exception& error)> failed;
   };
 
   // Starts MPI. Throws RanksError where it cannot.
   explicit Mailbox(const MpiFunctions& mpi);
-  // Where finish was not called, MPI is left without a word, which launchers take for a failure. What was posted is
-  // sent first, if that takes but a moment.
+  // Abandons the mailbox, unless it was ended before.
   ~Mailbox();
   Mailbox(const Mailbox&) = delete;
   Mailbox& operator=(const Mailbox&) = delete;
@@ -43,6 +45,9 @@ class Mailbox {
   void post(uint32_t to, Bytes message);
   // Sends what was posted, and waits for all processes to do so.
   void finish();
+  // Ends the thread without a word to MPI, which launchers take for a failure. What was posted is sent first, if that
+  // takes but a moment. From then on no duty is called.
+  void abandon();
 
  private:
   enum class Ending { none, finish, abandon };
@@ -56,6 +61,8 @@ class Mailbox {
   void work();
   bool sendAll();
   bool receiveAll();
+  template <class Step>
+  void guarded(Step step);
   void end(Ending ending);
 
   const MpiFunctions& mpi_;

@@ -67,14 +67,17 @@ Ranks::Ranks(const Launch& launch) {
   paths_.resize(count());
   lastTick_ = lastNews_ = Clock::now();
   mailbox_->open({.received = [this](uint32_t from, Mailbox::Bytes message) { received(from, std::move(message)); },
-                  .tick = [this] { tick(); }});
+                  .tick = [this] { tick(); },
+                  .failed = [this](const std::exception& error) { failed(error); }});
 }
 
-// Without finish the others are told to stop and to save: this process has failed.
+// Without finish the others are told to stop and to save: this process has failed. The mailbox' thread uses the
+// members, so it ends before they go.
 Ranks::~Ranks() {
   if (!mailbox_) return;
   watch({});
   sendToOthers(Kind::stop, 0);
+  mailbox_->abandon();
 }
 
 void Ranks::send(uint32_t to, Kind kind, uint64_t number, std::span<const unsigned char> content) {
@@ -240,15 +243,16 @@ void Ranks::takeText(uint32_t from, std::string text) {
 }
 
 void Ranks::takeContribution(uint32_t from, SumLabel label, Mailbox::Bytes message, bool lastStands) {
-  try {
-    for (SumTree::Complete& sum : tree_->take(label, from, std::move(message), lastStands)) {
-      complete(sum.label, std::move(sum.contributions));
-    }
-  } catch (const StateError& error) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    broken_ = fmt::format("films of processes do not add up: {}", error.what());
-    changed_.notify_all();
+  for (SumTree::Complete& sum : tree_->take(label, from, std::move(message), lastStands)) {
+    complete(sum.label, std::move(sum.contributions));
   }
+}
+
+// Whoever waits for a sum or a message throws: it may be the one that was lost.
+void Ranks::failed(const std::exception& error) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  broken_ = fmt::format("films of processes do not add up: {}", error.what());
+  changed_.notify_all();
 }
 
 void Ranks::complete(SumLabel label, std::vector<Mailbox::Bytes> messages) {

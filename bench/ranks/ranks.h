@@ -9,6 +9,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -79,6 +80,7 @@ class Ranks {
 
   void received(uint32_t from, Mailbox::Bytes message);
   void tick();
+  void failed(const std::exception& error);
   void send(uint32_t to, Kind kind, uint64_t number, std::span<const unsigned char> content = {});
   // message: begins with room for the head.
   void sendWithHead(uint32_t to, Kind kind, uint64_t number, Mailbox::Bytes message);
@@ -115,7 +117,7 @@ class Ranks {
   std::vector<uint64_t> paths_;
   bool stopping_ = false;
   std::optional<uint32_t> lost_;
-  std::string broken_;  // what went wrong with a sum
+  std::string broken_;  // what went wrong with a sum or a message
 };
 
 }  // namespace wavecrest

@@ -16,7 +16,6 @@
 #include "bench/report/series_facts.h"
 #include "bench/report/shown_metrics.h"
 #include "bench/results/noise_floors.h"
-#include "bench/statistics/chains_mislead.h"
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {
@@ -248,12 +247,7 @@ ReportScene collectScene(const CampaignResults& results, const SceneRecord& reco
     report.remarks.push_back(fmt::format("{}: runs of {} and of {} stand side by side; go on with the campaign.",
                                          record.name, formatSeconds(shortest), formatSeconds(longest)));
   }
-  // Errors of chains from few seeds mislead.
-  const bool fewChains = std::ranges::any_of(scene.series, [](const ReportSeries& series) {
-    return series.method.starts_with("mlt") && series.runs.size() > 1 && series.runs.size() < kFewestChainRenders;
-  });
-  const std::string chains = fmt::format("Of mlt: {}.", kChainsMislead);
-  if (fewChains && std::ranges::find(report.remarks, chains) == report.remarks.end()) report.remarks.push_back(chains);
+  addChainsRemark(report.remarks, scene);
   if (const std::string remark = disturbedRuns(results, record.name); !remark.empty()) report.remarks.push_back(remark);
   addRefusals(scene, results);
   // Measurements come from the results file. Pictures need the image files.

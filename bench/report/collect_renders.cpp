@@ -235,6 +235,7 @@ ReportScene collectScene(const RenderFolder& from, const std::string& name, cons
     auto& run = images.emplace_back();
     for (const SnapshotFile& snapshot : group[0]->snapshots) run.push_back({snapshot.seconds, snapshot.image});
   }
+  addChainsRemark(remarks, scene);
   addImages(scene, reference.image, images);
   return scene;
 }

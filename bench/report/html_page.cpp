@@ -62,9 +62,7 @@ std::string renderRemarks(const ConvergenceReport& report, const EmbeddedImages&
   std::string html;
   for (const std::string& remark : remarks) append(html, "<p class=\"facts\">{}</p>\n", escapeHtml(remark));
   if (remarks.size() <= kShortList) return html;
-  return fmt::format(
-      "<details class=\"remarks\"><summary>{} remarks on references and pictures</summary>{}</details>\n",
-      remarks.size(), html);
+  return fmt::format("<details class=\"remarks\"><summary>{} remarks</summary>{}</details>\n", remarks.size(), html);
 }
 
 // Title, legend of methods, answers and remarks.

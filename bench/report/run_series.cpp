@@ -36,7 +36,13 @@ nlohmann::json settingOf(const RunFile& run, const std::string& name) {
   std::string path = "/" + name;
   std::ranges::replace(path, '.', '/');
   const nlohmann::json::json_pointer place(path);
-  return run.stats.contains(place) ? run.stats.at(place) : nlohmann::json();
+  if (!run.stats.contains(place)) return {};
+  nlohmann::json value = run.stats.at(place);
+  // Without a limit earlier versions said 4095 of every method, where today's say 64 of mlt, and 2^24 of pt and gpt.
+  if (name == "max_depth" && value.is_number_unsigned()) {
+    value = std::min<uint64_t>(value.get<uint64_t>(), run.method == "mlt" ? 64 : 4095);
+  }
+  return value;
 }
 
 bool isSameSeries(const RunFile& a, const RunFile& b) {

@@ -7,7 +7,6 @@
 
 #include "bench/report/html_text.h"
 #include "bench/report/series_values.h"
-#include "bench/statistics/bands.h"
 
 namespace wavecrest {
 namespace {
@@ -106,14 +105,14 @@ ScenePlot biasPlot(const ReportScene& scene) {
   for (const ReportSeries& series : scene.series) {
     PlotCurve curve = emptyCurve(scene, series);
     for (const ReportBias& bias : thinned(series.bias)) {
-      if (bias.seeds < kFewestSeedsForShare) continue;
-      const double share = bias.bias2 / bias.meanSquareError;
+      const std::optional<double> share = shareOfBias(bias);
+      if (!share) continue;
       curve.points.push_back({.x = bias.seconds,
-                              .y = share,
-                              .low = share,
-                              .high = share,
+                              .y = *share,
+                              .low = *share,
+                              .high = *share,
                               .tooltip = fmt::format("{}: bias² is {:.0f} % of the error after {}", series.label,
-                                                     100 * share, formatSeconds(bias.seconds))});
+                                                     100 * *share, formatSeconds(bias.seconds))});
     }
     result.plot.curves.push_back(std::move(curve));
   }
@@ -136,7 +135,7 @@ std::vector<ScenePlot> scenePlots(const ConvergenceReport& report, const ReportS
   std::vector<ScenePlot> plots;
   for (size_t m = 0; m < report.metrics.size(); ++m) plots.push_back(metricPlot(scene, report.metrics[m], m));
   const bool anyBias = std::any_of(scene.series.begin(), scene.series.end(), [](const ReportSeries& series) {
-    return !series.bias.empty() && series.bias.back().seeds >= kFewestSeedsForShare;
+    return std::ranges::any_of(series.bias, [](const ReportBias& bias) { return shareOfBias(bias).has_value(); });
   });
   if (anyBias) plots.push_back(biasPlot(scene));
   return plots;

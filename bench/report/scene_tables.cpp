@@ -10,7 +10,6 @@
 #include "bench/report/method_style.h"
 #include "bench/report/series_values.h"
 #include "bench/report/time_ahead.h"
-#include "bench/statistics/bands.h"
 
 namespace wavecrest {
 namespace {
@@ -32,6 +31,9 @@ std::string methodCell(const ReportSeries& series) {
 
 // A dash for zero, which other programs leave open.
 std::string countCell(double count) { return count > 0 ? formatCount(count) : "–"; }
+
+// A dash where there is no number.
+std::string scoreText(double value) { return std::isnan(value) ? "–" : formatSignificant(value); }
 
 // "12 s", or for a method that does not end with the target a dash and how much longer it would take.
 std::string targetCell(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
@@ -79,7 +81,6 @@ std::string renderScores(const ConvergenceReport& report, const ReportScene& sce
     }
   }
   html += "</thead><tbody>";
-  const auto scoreText = [](double value) { return std::isnan(value) ? std::string("–") : formatSignificant(value); };
   for (const ReportSeries* series : order) {
     html += "<tr>" + methodCell(*series);
     for (size_t m = 0; m < report.metrics.size(); ++m) {
@@ -166,18 +167,17 @@ std::string renderBias(const ReportScene& scene) {
     if (series.bias.empty()) continue;
     // The table shows the last snapshot, the plot of bias shows all of them.
     const ReportBias& last = series.bias.back();
-    const bool told = last.seeds >= kFewestSeedsForShare;
-    const std::string share = told ? fmt::format("{:.1f} %", 100 * last.bias2 / last.meanSquareError) : "–";
+    const std::optional<double> share = shareOfBias(last);
     append(rows, "<tr>{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}",
-           methodCell(series), last.seeds, formatSignificant(last.meanSquareError), formatSignificant(last.variance),
-           formatSignificant(last.bias2), share);
+           methodCell(series), last.seeds, scoreText(last.meanSquareError), scoreText(last.variance),
+           scoreText(last.bias2), share ? fmt::format("{:.1f} %", 100 * *share) : "–");
   }
   if (rows.empty()) return "";
   return "<h3>Bias and variance at the end</h3><p class=\"facts\">Mean square error over several seeds, without the "
          "noise of the reference. Variance falls with more samples, bias does not; a bias² around zero, of either "
-         "sign, is none that these seeds could show. Of fewer than four seeds the share of bias is not told: it would "
-         "come "
-         "from too few pairs.</p><div class=\"scroll\"><table><thead><tr><th>method"
+         "sign, is none that these seeds could show. Of fewer than four seeds the share of bias is not told, as it "
+         "would come from too few pairs, nor of an error that is not above zero.</p><div "
+         "class=\"scroll\"><table><thead><tr><th>method"
          "<th class=\"n\">seeds<th class=\"n\">MSE<th class=\"n\">variance<th class=\"n\">bias²"
          "<th class=\"n\">share of bias</thead><tbody>" +
          rows + "</tbody></table></div>\n";

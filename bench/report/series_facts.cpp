@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bench/report/html_text.h"
+#include "bench/statistics/chains_mislead.h"
 
 namespace wavecrest {
 namespace {
@@ -50,6 +51,14 @@ void addSeriesFacts(ReportSeries& series, const std::vector<const nlohmann::json
     series.cpuSeconds += number(*run, "cpu_seconds");
   }
   for (const char* key : kSettingKeys) addDistinct(series.settings, stats, key);
+}
+
+void addChainsRemark(std::vector<std::string>& remarks, const ReportScene& scene) {
+  const bool few = std::ranges::any_of(scene.series, [](const ReportSeries& series) {
+    return series.method.starts_with("mlt") && series.runs.size() < kFewestChainRenders;
+  });
+  const std::string remark = fmt::format("Of mlt: {}.", kChainsMislead);
+  if (few && std::ranges::find(remarks, remark) == remarks.end()) remarks.push_back(remark);
 }
 
 }  // namespace wavecrest

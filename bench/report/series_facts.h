@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "bench/report/report_data.h"
@@ -17,5 +18,8 @@ void addStage(std::vector<ReportStage>& sums, const ReportStage& stage);
 /// The distinct values of a key over several objects, in order of appearance, as "1, 2, 3"; nothing is added if none
 /// has it.
 void addDistinct(std::vector<NamedValue>& shown, const std::vector<const nlohmann::json*>& objects, const char* key);
+
+/// Adds, once, that errors of chains from few seeds mislead, where the scene has such a series.
+void addChainsRemark(std::vector<std::string>& remarks, const ReportScene& scene);
 
 }  // namespace wavecrest

@@ -60,6 +60,11 @@ Range finalRange(const ReportSeries& series, size_t metric) {
   return range;
 }
 
+std::optional<double> shareOfBias(const ReportBias& bias) {
+  if (bias.seeds < kFewestSeedsForShare || !(bias.meanSquareError > 0)) return std::nullopt;
+  return bias.bias2 / bias.meanSquareError;
+}
+
 double finalSeconds(const ReportSeries& series) {
   double sum = 0, count = 0;
   for (const ReportRun& run : series.runs) {

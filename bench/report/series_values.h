@@ -29,6 +29,10 @@ struct Range {
 };
 Range finalRange(const ReportSeries& series, size_t metric);
 
+/// Squared bias over mean square error; nothing of fewer than kFewestSeedsForShare seeds, and where the error is not
+/// above 0 or not known.
+std::optional<double> shareOfBias(const ReportBias& bias);
+
 /// Render seconds at the end of a series: mean over its runs.
 double finalSeconds(const ReportSeries& series);
 

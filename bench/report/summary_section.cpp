@@ -215,12 +215,12 @@ std::string renderRanking(const ConvergenceReport& report) {
     append(html, "<td class=\"n\">{} of {}", standing.wins, report.scenes.size());
     html += numberCell(standing.factor.front(), " ×");
   }
-  return html +
-         fmt::format(
-             "</tbody></table></div><p class=\"facts\">Ranks at equal time by one metric each, means over the "
-             "scenes that a method was run on. In the order of {}; a click on another metric ranks by it. The last "
-             "column is the geometric mean over scenes.</p>\n",
-             escapeHtml(first.name));
+  return html + fmt::format(
+                    "</tbody></table></div><p class=\"facts\">Ranks at the end of the runs by one metric each, means "
+                    "over the scenes that a method was run on. In the order of {}; a click on another metric ranks by "
+                    "it. The last "
+                    "column is the geometric mean over scenes.</p>\n",
+                    escapeHtml(first.name));
 }
 
 std::string renderClaims(const ConvergenceReport& report) {

@@ -203,7 +203,7 @@ bool ChainSession<S>::traceDirect(const Stop& stop) {
       const FlushToZero flushToZero;
       const PixelRun& run = runs[index];
       StageContext<S> context = chainContext(plan_, settings_, area);
-      context.sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(part + parts * run.samples), nullptr};
+      context.sampler = {settings_.sampler, settings_.seed, part + parts * run.samples, nullptr};
       context.sharedPlace = film_.spreads();
       ChainWorker<S>& mine = worker();
       mine.traceDirect(context, area, run.first, run.count);
@@ -316,9 +316,10 @@ RenderStatistics ChainSession<S>::statistics() const {
   chains.largestShare = ofFilm.largestShare;
   chains.counters = chains_->counters();
   chains.bytes = chains_->bytes();
-  const Brightness all = epochs_.pooledWith(chains_->largeSteps(), plan_.pipeline.inPathSpace);
-  chains.pooledBrightness = all.mean;
-  chains.pooledError = all.standardError;
+  chains.bootstraps = epochs_.bootstraps();
+  chains.largeSteps = chains_->largeSteps();
+  chains.largeStepsOfAnyLength = plan_.pipeline.inPathSpace;
+  poolBrightness(chains);
   chains.stuck = stuck_;
   chains_->listStuck(chains.stuck);
   out.counters.nonFinite += chains.counters.nonFinite;

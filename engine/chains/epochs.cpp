@@ -45,13 +45,6 @@ Brightness Epochs::ofFilm() const {
   return all;
 }
 
-Brightness Epochs::pooledWith(const LargeStepSums& largeSteps, bool anyLength) const {
-  if (anyLength) return pooled(brightnessOf(sums_), brightnessOf(largeSteps));
-  LargeStepSums both = sums_;
-  both += largeSteps;
-  return brightnessOf(both);
-}
-
 void Epochs::save(StateWriter& out) const {
   static_assert(sizeof(Epoch) == 4 * sizeof(double), "padding would be written");
   out.list(epochs_);
@@ -63,6 +56,17 @@ void Epochs::restore(StateReader& in) {
   epochs_ = in.list<Epoch>();
   sums_ = in.value<LargeStepSums>();
   unit_ = in.value<double>();
+}
+
+void poolBrightness(ChainStatistics& chains) {
+  LargeStepSums both = chains.bootstraps;
+  both += chains.largeSteps;
+  // Large steps of any length say nothing about the lengths, but about b as a whole.
+  const Brightness all = chains.largeStepsOfAnyLength
+                             ? pooled(brightnessOf(chains.bootstraps), brightnessOf(chains.largeSteps))
+                             : brightnessOf(both);
+  chains.pooledBrightness = all.mean;
+  chains.pooledError = all.standardError;
 }
 
 }  // namespace wavecrest

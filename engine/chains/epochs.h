@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "engine/pilot/bootstrap.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
-
-class StateReader;
-class StateWriter;
 
 // Where in [0, 1) startSamples begins in an epoch: a number that depends on the seed and epoch alone (SplitMix64,
 // Steele et al. 2014).
@@ -42,9 +40,8 @@ class Epochs {
 
   // b as the film has it: the epochs' means, each weighted by its steps, and the largest share of all.
   Brightness ofFilm() const;
-  // b by all samples that know it: those of the bootstraps and the chains' large steps. anyLength: these may have any
-  // length, and say something about b as a whole.
-  Brightness pooledWith(const LargeStepSums& largeSteps, bool anyLength) const;
+  // What the samples of all bootstraps say about b, by length.
+  const LargeStepSums& bootstraps() const { return sums_; }
 
   // Everything but the targets, for checkpoints.
   void save(StateWriter& out) const;
@@ -60,5 +57,9 @@ class Epochs {
   LargeStepSums sums_;  // of all bootstraps
   double unit_ = 0;
 };
+
+// Sets pooledBrightness and pooledError to b by all samples that know it: those of the bootstraps and of the large
+// steps, which must be set.
+void poolBrightness(ChainStatistics& chains);
 
 }  // namespace wavecrest

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "engine/compile/pick_table.h"
 #include "engine/compile/sky.h"
 #include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"

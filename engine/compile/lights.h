@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "engine/compile/pick_table.h"
 #include "engine/compile/primitives.h"
 #include "engine/compile/textures.h"
 

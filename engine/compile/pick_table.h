@@ -1,4 +1,5 @@
-// Tables from which an index is picked in proportion to its weight: alias tables of lights and of texels of the sky.
+// Tables from which an index is picked in proportion to its weight: alias tables of lights, of texels of the sky, and
+// others.
 #pragma once
 
 #include <cstddef>

@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "engine/compile/lights.h"
+#include "engine/compile/pick_table.h"
 #include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"
 

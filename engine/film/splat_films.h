@@ -43,7 +43,6 @@ class SplatFilms {
   // scale: units in 1, a power of two. threads: how many workers may add splats at the same time.
   SplatFilms(size_t pixels, size_t threads, double scale);
 
-  size_t pixels() const { return pixels_; }
   double scale() const { return scale_; }
   // Regions are runs of 2^regionBits pixels, row by row; there is one where every worker has a film of its own.
   uint32_t regionBits() const { return regionBits_; }

@@ -59,8 +59,11 @@ void readIntegrator(LoadContext& context, const XmlElement& element) {
   }
   RenderDefaults& defaults = context.scene.defaults;
   constexpr int64_t kMost = 1'000'000'000;
-  const int64_t fallback = integratorOf(element.get("type")).maxDepth;
-  defaults.maxDepth = static_cast<int>(parameters.integer("max_depth", fallback, -1, kMost));
+  const std::string_view type = element.get("type");
+  const int64_t fallback = integratorOf(type).maxDepth;
+  // direct_projective has two edges, whatever it states.
+  const bool isFixed = type == "direct_projective";
+  defaults.maxDepth = static_cast<int>(isFixed ? fallback : parameters.integer("max_depth", fallback, -1, kMost));
   if (defaults.maxDepth == 0) {
     throw LoadError(parameters.locationOf("max_depth"),
                     "max_depth is 0, with which nothing is seen; expected -1, or 1 or more");

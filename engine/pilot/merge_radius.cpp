@@ -198,8 +198,8 @@ PhotonDensity photonDensity(std::span<const MergePlace> places, std::span<const 
     // The least squared distances so far, in order.
     std::array<float, kNearest> nearest;
     nearest.fill(std::numeric_limits<float>::infinity());
-    // Whether positions that are farther in x can be nearer: rounded as it is, the sum of squares is no less than x *
-    // x.
+    // Whether positions that are farther in x can be nearer: the sum of squares, as it is rounded, is no less than that
+    // of x alone.
     const auto visit = [&](const Position& there) {
       const float x = there[0] - here[0], y = there[1] - here[1], z = there[2] - here[2];
       if (!(x * x < nearest.back())) return false;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/compile/lights.h"
+#include "engine/compile/pick_table.h"
 
 namespace wavecrest {
 namespace {

@@ -123,7 +123,7 @@ struct RenderSettings {
   std::optional<uint64_t> mostLightPaths;        // with a budget: N_L at most, even if more would fit
   std::optional<uint64_t> iterations;            // stop after this many,
   std::optional<double> seconds;                 // or after this much render time, whichever comes first,
-  ClockKind clock = ClockKind::wall;             // as this clock counts it; a session that goes on for another: wall
+  ClockKind clock = ClockKind::wall;             // as this clock counts it
   std::optional<Specialization> specialization;  // overrides the scene's own; it must cover the scene
   bool measureStages = false;
   // Work is cut into pieces as for so many threads, however many there are; unset: for those that there are.

@@ -40,6 +40,8 @@ struct ChainStatistics {
   // b from the bootstraps and all large steps together; too small where chains are bound to lengths and b is uncertain
   // (engine/chains/README.md). The image is scaled by the bootstraps' own, which chains start from.
   double pooledBrightness = 0, pooledError = 0;
+  LargeStepSums bootstraps, largeSteps;  // the samples of these
+  bool largeStepsOfAnyLength = false;    // in path space chains are bound to no length
   double largestShare =
       0;  // of one bootstrap sample in b, at most over epochs: large where chains start too much alike
   ChainCounters counters;
@@ -117,7 +119,7 @@ class Session {
   // first renderUntil. Throws StateError if the state belongs to another render; the session must not be used then.
   virtual void restore(StateReader& in) = 0;
 
-  // Iterations of the slowest wave and seconds so far, for progress shown from another thread.
+  // Render seconds and camera paths (of mlt: mutations) so far, for progress shown from another thread.
   virtual double progressSeconds() const = 0;
   virtual uint64_t progressPaths() const = 0;
 

@@ -4,8 +4,8 @@
 
 namespace wavecrest {
 
-// renderSeconds is wall time, because a session that goes on for another one counts by the wall clock
-// (RenderSettings::clock).
+// renderSeconds is wall time whatever the clock of the settings: with the CPU seconds, a session that goes on from here
+// counts by either (RenderClock).
 WorkDone WorkDone::of(const RenderStatistics& statistics) {
   return {.paths = statistics.paths,
           .lightPaths = statistics.lightPaths,

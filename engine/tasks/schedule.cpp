@@ -74,11 +74,4 @@ void ScheduleState::end(const ScheduledTask& task) {
   }
 }
 
-size_t ScheduleState::ready() const {
-  // Count tasks of the next iteration, then tasks of the iterations under way.
-  size_t count = readyOf(first_ + begun_.size(), 0, 0);
-  for (size_t place = 0; place < begun_.size(); ++place) count += readyAt(place);
-  return count;
-}
-
 }  // namespace wavecrest

@@ -50,10 +50,6 @@ class ScheduleState {
   std::optional<ScheduledTask> take(const MayBegin& mayBegin);
   // The task is over.
   void end(const ScheduledTask& task);
-  // How many tasks could be taken now, if another iteration may begin.
-  size_t ready() const;
-  // Iterations that have begun and are not over.
-  size_t underWay() const { return begun_.size(); }
   // Iterations before this one are over.
   uint64_t firstUnderWay() const { return first_; }
 

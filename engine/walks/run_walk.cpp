@@ -1,6 +1,7 @@
 #include "engine/walks/run_walk.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/tasks/ticks.h"
 #include "engine/walks/stage_contracts.h"
@@ -67,13 +68,15 @@ void runDepth(const std::vector<StageCall<S>>& stages, StageContext<S>& context,
   }
 }
 
-// Ends the paths of a light walk at their last vertices, and counts them as `arrive` counts those of camera walks.
+// Ends the paths of a light walk at their last vertices and counts them all: their next rays are not traced, so some
+// would have left the scene.
 template <class S>
 void cutPaths(Wave<S>& wave, StageCounters& counters) {
   const auto& paths = wave.paths;
   counters.cutPaths += paths.size;
   for (size_t i = 0; i < paths.size; ++i) {
-    const S throughput = std::max({paths.throughputR[i], paths.throughputG[i], paths.throughputB[i]});
+    const S throughput =
+        std::max({std::abs(paths.throughputR[i]), std::abs(paths.throughputG[i]), std::abs(paths.throughputB[i])});
     counters.cutThroughput += static_cast<double>(throughput * paths.rouletteScale[i]);
   }
   wave.setVertices(0, 0);

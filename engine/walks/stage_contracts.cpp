@@ -61,10 +61,10 @@ std::string_view brokenPaths(const Wave<S>& wave) {
     if (paths.lane[i] >= wave.rays.capacity()) return "lanes of the wave";
     if (!isUnit<S>(rays.directionX[i], rays.directionY[i], rays.directionZ[i])) return "unit directions";
     if (!std::isfinite(rays.originX[i] + rays.originY[i] + rays.originZ[i])) return "finite origins";
-    // NaN fails every comparison, hence the negated tests.
     for (const S value : {paths.throughputR[i], paths.throughputG[i], paths.throughputB[i]}) {
-      if (!(value >= 0)) return "throughputs from 0";
+      if (std::isnan(value)) return "throughputs without NaN";
     }
+    // NaN fails every comparison, hence the negated tests.
     if (!(paths.dVCM[i] >= 0)) return "MIS sums from 0";
     if (paths.dVC.needed() && (!(paths.dVC[i] >= 0) || !(paths.dVM[i] >= 0))) return "MIS sums from 0";
     if (paths.rouletteScale.needed() && !(paths.rouletteScale[i] > 0)) return "a scale for roulette";
@@ -117,7 +117,7 @@ std::string_view brokenShadowRays(const StageContext<S>& context, const Wave<S>&
     const float span = shadow.directionX[i] + shadow.directionY[i] + shadow.directionZ[i];
     if (std::isnan(span + shadow.originX[i] + shadow.originY[i] + shadow.originZ[i])) return "segments without NaN";
     for (const S value : {shadow.red[i], shadow.green[i], shadow.blue[i]}) {
-      if (!(value >= 0)) return "contributions from 0";
+      if (std::isnan(value)) return "contributions without NaN";
     }
   }
   return {};

@@ -205,7 +205,7 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
     storeVec3(ray.throughput, paths.throughputR, paths.throughputG, paths.throughputB, i);
     storeMis<kFeatures>(ray.mis, paths, i);
     // Russian roulette compares throughputs with the first one (METHODS 1.5). The bound keeps its reciprocal finite.
-    store(Real(1) / max(maxComponent(ray.throughput), Real(1e-37f)), paths.rouletteScale, i);
+    store(Real(1) / max(maxComponent(abs(ray.throughput)), Real(1e-37f)), paths.rouletteScale, i);
     store(lane, paths.lane, i);
     store(picked, paths.light, i);
   }

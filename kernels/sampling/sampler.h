@@ -23,8 +23,8 @@ constexpr uint32_t kMostPaths = 1u << kPathBits;
 constexpr uint32_t kIterationsPerWave = 1u << (32 - kPathBits);
 
 // independent: every number is independent of every other.
-// sobol: the numbers of one (path, block) are well distributed over the iterations. Light paths serve all pixels, so
-//   they are points of one sequence: the numbers of one block are well distributed over paths and iterations together.
+// sobol: the numbers of one (path, block) are well distributed over the iterations. The light paths of
+//   an iteration are points of one sequence: the numbers of a block are well distributed over paths and iterations.
 // chain: what Markov chains propose (ChainSamples); no choice of the user's, but part of Metropolis light transport.
 enum class SamplerKind { independent, sobol, chain };
 

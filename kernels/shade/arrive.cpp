@@ -276,7 +276,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     Real rouletteScale(1);
     if constexpr (hasRouletteScale(kFeatures)) rouletteScale = load(paths.rouletteScale, i);
     if (!goesOn) {
-      countCut(*context.counters, hit, maxComponent(throughput) * rouletteScale);
+      countCut(*context.counters, hit, maxComponent(abs(throughput)) * rouletteScale);
       continue;
     }
     vertices.append({.position = surface.position,

@@ -132,7 +132,7 @@ WAVECREST_NOINLINE void recordDirections(const StageContext<typename P::Storage>
   // A delta lobe is no place in the histogram.
   append(zeroUnless(!specular, to<Float>(pdf) * at.solidAngle), m, records.pdf, out);
   append(to<Float>(slope), m, records.slope, out);
-  append(to<Float>(maxComponent(before) * reciprocal(maxComponent(after))), m, records.survival, out);
+  append(to<Float>(maxComponent(abs(before)) * reciprocal(maxComponent(abs(after)))), m, records.survival, out);
   append(context.depth == 1 ? worthOf(*context.learned.guide, wave, m, i, lane, cell, carried) : Float(0), m,
          records.worth, out);
 }

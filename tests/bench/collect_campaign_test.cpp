@@ -160,6 +160,24 @@ TEST_F(CollectCampaign, runsOfUnequalTimeAreRemarked) {
   EXPECT_EQ(std::count_if(report.remarks.begin(), report.remarks.end(), speaksOf), 1);
 }
 
+TEST_F(CollectCampaign, errorsOfFewChainsAreRemarkedOnce) {
+  const auto remarks = [&](const std::string& name, uint64_t seeds) {
+    std::vector<RunRecord> runs;
+    for (uint64_t seed = 1; seed <= seeds; ++seed) {
+      runs.push_back(run("mlt-pathspace", seed, 0.2));
+      runs.push_back(run("mlt", seed, 0.2));
+    }
+    writeStore(name, runs);
+    const ConvergenceReport report = collectReport(std::vector<fs::path>{folder / name});
+    return std::ranges::count_if(report.remarks, [](const std::string& remark) {
+      return remark.starts_with("Of mlt: errors of mlt from few renders are too small");
+    });
+  };
+  EXPECT_EQ(remarks("one.sqlite", 1), 1);
+  EXPECT_EQ(remarks("few.sqlite", 15), 1);
+  EXPECT_EQ(remarks("enough.sqlite", 16), 0);
+}
+
 TEST_F(CollectCampaign, carriesBiasPathClassesClaimsAndRefusals) {
   RunRecord refused{.scene = "box", .method = "ppm", .seed = 1, .state = RunState::refused, .reason = "no lights"};
   writeStore("results.sqlite", {run("pt", 1, 0.2), run("pt", 2, 0.2), refused});

@@ -293,6 +293,19 @@ TEST_F(CollectRenders, seriesOfOneMethodAreNamedByWhatDiffers) {
   EXPECT_EQ(scene.series[2].label, "lt");
 }
 
+// Numbers that stand for no limit of depth, in stats of earlier versions and of this one.
+TEST_F(CollectRenders, runsOfUnlimitedDepthAreOneSeries) {
+  addRun("a", {{"max_depth", 4095}});
+  addRun("b", {{"max_depth", 1 << 24}, {"seed", 2}});
+  addRun("c", {{"method", "mlt"}, {"max_depth", 4095}});
+  addRun("d", {{"method", "mlt"}, {"max_depth", 64}, {"seed", 2}});
+  const ConvergenceReport report = collectRenders(folder);
+  const auto& series = report.scenes.at(0).series;
+  ASSERT_EQ(series.size(), 2u);
+  EXPECT_EQ(series[0].label, "pt");
+  EXPECT_EQ(series[1].label, "mlt");
+}
+
 TEST_F(CollectRenders, runsOfOtherRadiiAndPassesAreSeriesOfTheirOwn) {
   addRun("a", {{"method", "ppm"}, {"radius", 0.001}, {"direct_pass", false}});
   addRun("b", {{"method", "ppm"}, {"radius", 0.004}, {"direct_pass", false}});
@@ -343,6 +356,14 @@ TEST_F(CollectRenders, seedsOfEqualIterationsMeetWhateverTheirTimes) {
   const ConvergenceReport report = collectRenders(folder);
   EXPECT_EQ(meanCurve(report.scenes[0].series.at(0), 0).size(), 1U);
   EXPECT_TRUE(report.remarks.empty());
+}
+
+TEST_F(CollectRenders, errorsOfFewChainsAreRemarked) {
+  addRun("a", {{"method", "mlt"}});
+  addRun("b");
+  const std::vector<std::string> remarks = collectRenders(folder).remarks;
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_TRUE(remarks[0].starts_with("Of mlt: errors of mlt from few renders are too small")) << remarks[0];
 }
 
 TEST_F(CollectRenders, aListOfTheCurrentFolderNeedsNoFolder) {

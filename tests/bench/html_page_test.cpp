@@ -11,7 +11,9 @@
 #include "bench/report/answer_section.h"
 #include "bench/report/embedded_images.h"
 #include "bench/report/html_text.h"
+#include "bench/report/scene_plots.h"
 #include "bench/report/scene_section.h"
+#include "bench/report/scene_tables.h"
 #include "bench/report/speedup_section.h"
 #include "bench/report/summary_section.h"
 #include "tests/bench/sample_report.h"
@@ -118,10 +120,19 @@ TEST(HtmlPage, summaryIsForSeveralScenesOnly) {
   EXPECT_FALSE(contains(renderReport(report), "<nav>"));
 }
 
+TEST(HtmlPage, manyRemarksAreCountedAndBehindAClick) {
+  ConvergenceReport report = sampleReport();
+  report.remarks = {"a noisy reference", "runs of unequal time", "disturbed runs"};
+  EXPECT_FALSE(contains(renderReport(report), "<details class=\"remarks\">"));
+  report.remarks.emplace_back("images that are not there");
+  EXPECT_TRUE(contains(renderReport(report), "<details class=\"remarks\"><summary>4 remarks</summary>"));
+}
+
 // The second scene has only pt: first by every metric there, second of three in the first scene by RMSE.
 TEST(Summary, ranksMethodsByOneMetric) {
   const std::string ranking = renderRanking(sampleReport());
   EXPECT_FALSE(contains(ranking, "mean rank")) << "metrics are correlated: their ranks are not averaged";
+  EXPECT_TRUE(contains(ranking, ">Ranks at the end of the runs by one metric each")) << "whose times may be unequal";
   const std::regex row("</i>(\\w+) <small>[^<]*</small><td class=\"n\">([0-9.]+)");
   std::vector<std::pair<std::string, std::string>> found;
   for (std::sregex_iterator match(ranking.begin(), ranking.end(), row), end; match != end; ++match)
@@ -248,6 +259,27 @@ TEST(SceneSection, showsWhatIsKnownAndNothingElse) {
   const std::string bare = renderScene(report, 0, EmbeddedImages());
   for (const char* absent : {"Pictures", "<img", "Bias", "Which paths", "refused", "Error maps", "Where the time went"})
     EXPECT_FALSE(contains(bare, absent)) << absent;
+}
+
+TEST(SceneSection, tellsNoShareOfBiasInAnErrorThatIsNotAboveZero) {
+  ConvergenceReport report = sampleReport();
+  ReportScene& scene = report.scenes[0];
+  EXPECT_TRUE(contains(renderBias(scene), "<td class=\"n\">25.0 %"));
+  const auto setLast = [&](double meanSquareError) {
+    for (ReportSeries& series : scene.series) series.bias.back().meanSquareError = meanSquareError;
+  };
+  for (const double none : {-0.004, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
+    setLast(none);
+    const std::string table = renderBias(scene);
+    EXPECT_TRUE(contains(table, "<td class=\"n\">–")) << none;
+    for (const char* number : {" %", "nan", "inf"}) EXPECT_FALSE(contains(table, number)) << none;
+    const ScenePlot plot = scenePlots(report, scene).back();
+    ASSERT_EQ(plot.key, "bias");
+    ASSERT_EQ(plot.plot.curves.size(), 3U);
+    for (const PlotCurve& curve : plot.plot.curves) EXPECT_EQ(curve.points.size(), 1U) << "the other snapshot";
+  }
+  for (ReportSeries& series : scene.series) series.bias.front().meanSquareError = 0;
+  EXPECT_NE(scenePlots(report, scene).back().key, "bias") << "a plot without a point";
 }
 
 TEST(HtmlPage, refusesValuesThatDoNotMatchTheMetrics) {

@@ -302,6 +302,10 @@ class Rows(Converge):
             result = self.converge(*scenes, *small, "-D", "powr=2", "--out", "b", "--progress", "none", expect=INPUT)
             self.assert_one_error_line(result, r".*other\.xml: neither this scene nor another of the campaign uses -D powr;")
             self.assertFalse(pathlib.Path(self.path("b")).exists(), "nothing is begun")
+        # A shard has one of the scenes; the names are those of both.
+        for shard in ("1/2", "2/2"):
+            self.converge("other.xml", "own.xml", *small, "-D", "powr=2", "--out", "b", "--shard", shard, expect=INPUT)
+            self.converge("other.xml", "own.xml", *small, "-D", "power=2", "--out", "c", "--shard", shard)
         # The command for a missing reference has the definitions of its scene.
         os.mkdir(self.path("given"))
         for scene, command in (("other", "reference other.xml --size 16x12 -o"),

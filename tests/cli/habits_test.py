@@ -112,7 +112,7 @@ class Words(CommandTest):
             ("render", "--mlt", "pssmlt mmlt pathspace"),
             ("render", "--merge-vertices", "all first"),
             ("render", "--progress", "auto bar jsonl none"),
-            ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm gpt"),
+            ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm gpt evcm"),
             ("converge", "--profile", "quick standard study paper"),
             ("converge", "--methods", "pt lt bpt mlt ppm bpm vcm gpt evcm mlt-pathspace mlt-pssmlt ppm-direct "
              + " ".join(f"{method}-auto" for method in "pt lt bpt ppm bpm vcm gpt evcm".split())),

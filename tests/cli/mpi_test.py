@@ -99,6 +99,8 @@ class Sums(MpiTest):
             self.assert_equal_but_for_rounding(self.image("whole.pfm"), image, method)
             for count in COUNTS:
                 self.assertEqual(joint[count], whole[count], f"{method}: {count}")
+            for key in ("b", "b_error", "b_pooled", "b_pooled_error") if method == "mlt" else ():
+                self.assertAlmostEqual(joint[key], whole[key], delta=1e-9 * whole[key], msg=key)
             self.assertEqual(joint["processes"], 3)
             self.assertEqual(joint["threads"], 3)
             self.assertEqual([process["rank"] for process in joint["process_list"]], [0, 1, 2])

@@ -51,6 +51,12 @@ class PublishTest(CommandTest):
         facts["scenes"] = {scene: {"hash": "0", "noise_floors": {"ssim": 0.93}} for scene in scenes}
         facts["biases"] = []
         stats = {"threads": 1, "iterations": 1000, "render_seconds": 100.0, "camera_paths": 1000}
+        facts["refused"] = [
+            {"scene": scene, "method": method, "seed": 1, "reason": "cannot", "stats": {}}
+            for scene, scores in scenes.items()
+            for method in methods
+            if method not in scores
+        ]
         runs = [(scene, method, scores) for scene, rows in scenes.items() for method, scores in rows.items()]
         facts["runs"] = [{"scene": scene, "method": method, "seed": 1, "stats": stats} for scene, method, _ in runs]
         lines = ["scene,method,seed,snapshot,seconds,iterations,ssim,relmse"]

@@ -85,6 +85,33 @@ class PublishParts(unittest.TestCase):
         campaign.runs = runs[2:]
         self.assertEqual(publish.by_scene(campaign, "cpu"), "A")
 
+    def test_shares_of_cores_are_rounded_down(self):
+        publish = program_module("bench/campaign/publish")
+        settings = dict.fromkeys(("size", "time", "cpu", "isa", "precision", "sampler", "version", "commit"), "x") | {"seeds": "1"}
+
+        def conditions(share, methods=("pt",)):
+            runs = [("x", method, 1, {"threads": 2}) for method in methods]
+            shares = [(*run[:3], share) for run in runs]
+            return publish.conditions(types.SimpleNamespace(settings=settings, runs=runs, methods=methods, shares=lambda: shares))
+
+        self.assertIn("for at least 94% of its time.", conditions(0.9451))
+        self.assertIn("1 of 1 runs had less than 94% of their cores' time: x pt seed 1 (93%).", conditions(0.9399))
+        # Errors of chains.
+        header = (ROOT / "bench" / "statistics" / "chains_mislead.h").read_text(encoding="utf-8")
+        self.assertIn(f'"{publish.CHAINS_MISLEAD}"', header)
+        self.assertIn(f"kFewestChainRenders = {publish.FEWEST_CHAIN_RENDERS};", header)
+        said = f" Of mlt: {publish.CHAINS_MISLEAD}."
+        self.assertNotIn(said, conditions(1))
+        self.assertTrue(conditions(1, ("pt", "mlt-pathspace")).endswith(said))
+
+    def test_long_times_are_no_powers_of_ten(self):
+        publish = program_module("bench/campaign/publish")
+        settings = {"time": "x=1440 y=2460 z=59.44", "size": "1x1", "seeds": "1"}
+        runs = [("x", "pt", 1, {"threads": 2})]
+        campaign = types.SimpleNamespace(settings=settings, runs=runs, scenes=[], claims=[])
+        self.assertEqual(publish.run_time(campaign), "1440 s a run in x, 2460 s a run in y, 59.4 s a run in z")
+        self.assertIn("1 seed, 59.4 to 2460 s a run;", publish.section(campaign, "FOLDER"))
+
     def test_the_page_names_the_files_that_were_asked_for(self):
         publish = program_module("bench/campaign/publish")
         settings = {"profile": "study", "options": '{"scenes": ["x"], "--profile": ["study"]}', "commit": "0"}
@@ -119,6 +146,7 @@ class PublishParts(unittest.TestCase):
             campaign = types.SimpleNamespace(scenes=scenes, settings=settings, own_references=own, runs=[("x", "pt", 1, stats)])
             return publish.study_notes(campaign)
 
+        self.assertIn("stands in the evidence of each finding about one scene (", notes(["cornell-diffuse"]))
         agrees = "a second one agrees with it"
         self.assertIn(f"{agrees}. How good", notes(["cornell-diffuse"]))
         self.assertIn(f"{agrees}, but for of-others: of this machine, and not checked. How", notes(["cornell-diffuse", "of-others"]))

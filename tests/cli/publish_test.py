@@ -94,6 +94,15 @@ class Publishing(PublishTest):
         database.execute("UPDATE run SET stats = ?, seed = 3, state = 'refused' WHERE id = 1", [stats])
         database.commit()
         self.assertIn("seeds of cornell-diffuse pt are missing", self.publish().stderr)
+        # One that was stopped after pt, and before its second scene.
+        database.execute("UPDATE run SET seed = 1, state = 'done' WHERE id = 1")
+        for table in ("stage", "measurement", "snapshot"):
+            database.execute(f"DELETE FROM {table} WHERE run IN (SELECT id FROM run WHERE method = 'lt')")
+        database.execute("DELETE FROM run WHERE method = 'lt'")
+        database.execute("UPDATE campaign SET value = value || ' cornell-mirror' WHERE key = 'scenes'")
+        database.commit()
+        open_pairs = "cornell-diffuse lt, cornell-mirror pt, cornell-mirror lt"
+        self.assertIn(f"publish: {open_pairs}: neither rendered nor refused; expected", self.publish().stderr)
         database.close()
         self.assertFalse(pathlib.Path(self.path("standard")).exists(), "nothing is written")
 
@@ -114,6 +123,14 @@ class Publishing(PublishTest):
             self.assertEqual(result.returncode, 1)
             self.assertRegex(result.stderr, rf"^restore: {pattern}[^\n]*\n$")
         self.assertFalse(pathlib.Path(self.path("c")).exists(), "nothing is written")
+
+    def test_refused_rows_are_published_and_restored(self):
+        self.made_up_campaign()
+        self.assertEqual(self.publish().returncode, 0)
+        facts = json.loads(self.read("standard/campaign.json"))
+        refused = {"method": "vcm-auto", "seed": 1, "reason": "cannot", "stats": {}}
+        self.assertEqual(facts["refused"][0], {"scene": "lafortune-room", **refused})
+        self.assertEqual([(row["scene"], row["method"]) for row in facts["refused"][1:]], [("veach-door", "pt")])
 
     def test_campaigns_by_iterations_are_refused(self):
         self.run_wavecrest("converge", "cornell-diffuse", "--methods", "pt", "--size", "32x24", "--spp", "2", "--out", "a")

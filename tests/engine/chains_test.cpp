@@ -150,10 +150,12 @@ TEST(Epochs, weighTheirBrightnessBySteps) {
   EXPECT_DOUBLE_EQ(film.standardError, 10 * std::sqrt(2.0 / 2) / 50);
   EXPECT_DOUBLE_EQ(film.largestShare, 0.75);
   // Six samples of three bootstraps, and two more.
-  LargeStepSums largeSteps;
-  largeSteps.add(epochs.plan().lengthOf(0), 7);
-  largeSteps.add(epochs.plan().lengthOf(0), 11);
-  EXPECT_DOUBLE_EQ(epochs.pooledWith(largeSteps, false).mean, (0 + 0 + 1 + 3 + 5 + 5 + 7 + 11) / 8.0);
+  ChainStatistics chains;
+  chains.bootstraps = epochs.bootstraps();
+  chains.largeSteps.add(epochs.plan().lengthOf(0), 7);
+  chains.largeSteps.add(epochs.plan().lengthOf(0), 11);
+  poolBrightness(chains);
+  EXPECT_DOUBLE_EQ(chains.pooledBrightness, (0 + 0 + 1 + 3 + 5 + 5 + 7 + 11) / 8.0);
 }
 
 // An offset of 0 would always start the first chain from the first sample with light.

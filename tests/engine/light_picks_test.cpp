@@ -10,6 +10,7 @@
 
 #include "engine/compile/compiled_scene.h"
 #include "engine/compile/lights.h"
+#include "engine/compile/pick_table.h"
 #include "tests/load/scene_file.h"
 
 namespace wavecrest {

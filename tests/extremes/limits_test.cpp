@@ -7,7 +7,7 @@
 
 #include "bench/extremes/extreme_scenes.h"
 #include "engine/compile/compiled_scene.h"
-#include "engine/compile/lights.h"
+#include "engine/compile/pick_table.h"
 #include "engine/compile/textures.h"
 #include "engine/plan/render_plan.h"
 #include "engine/scene/scene_error.h"

@@ -49,7 +49,7 @@ class SkySamplingTest : public IsaTest {
 };
 WAVECREST_TEST_EVERY_ISA(SkySamplingTest);
 
-// entryShares (engine/compile/lights.h) counts the numbers of each row by the same product.
+// entryShares (engine/compile/pick_table.h) counts the numbers of each row by the same product.
 TEST_P(SkySamplingTest, rowsOfTheSkyHaveAsManyNumbersAsWithoutASun) {
   const std::vector<float> numbers = numbersAtRowEnds();
   for (const float place : {0.925f, 0.95f, 0.975f}) {

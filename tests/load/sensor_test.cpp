@@ -235,6 +235,11 @@ TEST(Integrator, DepthDefaultsToThatOfItsType) {
   };
   for (const char* type : {"prb", "prb_basic", "prb_projective", "prbvolpath"}) EXPECT_EQ(depthOf(type), 6) << type;
   EXPECT_EQ(depthOf("direct_projective"), 2);
+  const Scene stated =
+      loadBody(R"(<integrator type="direct_projective"><integer name="max_depth" value="8"/></integrator>)");
+  EXPECT_EQ(stated.defaults.maxDepth, 2);
+  ASSERT_EQ(stated.notes.size(), 1u);
+  EXPECT_NE(stated.notes[0].what.find("max_depth"), std::string::npos);
   EXPECT_EQ(depthOf("vpl"), 5);
   EXPECT_EQ(depthOf("ptracer"), -1);
   EXPECT_EQ(loadBody(R"(<integrator type="prb"><integer name="max_depth" value="9"/></integrator>)").defaults.maxDepth,

@@ -41,6 +41,19 @@ TEST(StudyClaims, nameScenesMethodsAndMetricsThatExist) {
   EXPECT_EQ(findStudyClaim("nothing"), nullptr);
 }
 
+// bench/claims/README.md says why. The rate at which methods converge is judged by losses that are equal.
+TEST(StudyClaims, needPathsByWhatTheyAreAbout) {
+  using K = ConditionKind;
+  for (const Claim& claim : studyClaims()) {
+    bool converging = false, comparesMlt = false;
+    for (const Condition& c : claim.conditions) {
+      if (c.kind == K::reaches || c.kind == K::misses || c.kind == K::stalls || c.kind == K::biased) converging = true;
+      if (std::ranges::count(c.methods, "mlt") + std::ranges::count(c.than, "mlt") > 0) comparesMlt = true;
+    }
+    EXPECT_EQ(claim.needs.paths, converging ? 0.1 : comparesMlt ? 0.05 : 0.01) << claim.id;
+  }
+}
+
 TEST(StudyClaims, malformedListsAreRefused) {
   EXPECT_THROW(parseClaims("{"), ClaimListError);
   EXPECT_THROW(parseClaims(R"([{"id": "a"}])"), ClaimListError);

@@ -53,7 +53,13 @@ TEST(JudgeClaims, fasterIsAboutTheTimeToEqualQuality) {
   EXPECT_EQ(record.figure, "to RMSE 1.5 pt takes 1.78 s, lt 3.99 s");
   EXPECT_EQ(MadeUp().with("pt", "rmse", {1.5, 1.51}).with("lt", "rmse", {1.0, 1.01}).verdict(faster), kFails);
   // Both are as good as at the end at once, so who was first is not seen.
-  EXPECT_EQ(MadeUp().with("pt", "rmse", {1, 1}, 1).with("lt", "rmse", {1, 1}, 1).verdict(faster), kUndecided);
+  const MadeUp atOnce = MadeUp().with("pt", "rmse", {1, 1}, 1).with("lt", "rmse", {1, 1}, 1);
+  EXPECT_EQ(atOnce.verdict(faster), kUndecided);
+  EXPECT_EQ(MadeUp(atOnce).delay("lt", 1.1).verdict(faster), kUndecided) << "lt may have had it before its snapshot";
+  EXPECT_EQ(MadeUp(atOnce).delay("pt", 1.1).verdict(faster), kUndecided);
+  // An upper bound of the sooner one decides: pt has at once what lt has at the end.
+  EXPECT_EQ(MadeUp().with("pt", "rmse", {1, 1}, 1).with("lt", "rmse", {1, 1}, 2).verdict(faster), kHolds);
+  EXPECT_EQ(MadeUp().with("pt", "rmse", {1, 1}, 2).with("lt", "rmse", {1, 1}, 1).verdict(faster), kFails);
   // Ahead at the end by little, but only after a start far behind: no sooner at the quality that both reach.
   EXPECT_EQ(MadeUp().with("pt", "rmse", {1.0, 1.3}, 9).with("lt", "rmse", {1.1, 1.2}, 1.5).verdict(faster), kUndecided);
 }
@@ -65,6 +71,12 @@ TEST(JudgeClaims, fasterIsAboutTheTimeFromWhichOnTheQualityStays) {
       MadeUp().curve("pt", "rmse", {1, 2, 3, 2, 1}).curve("vcm", "rmse", {4, 2, 1, 0.5, 0.25}).judge(faster);
   EXPECT_EQ(record.verdict, kHolds);
   EXPECT_EQ(record.figure, "to RMSE 1 vcm takes 4 s, pt 16 s");
+  const ClaimRecord longer = MadeUp()
+                                 .curve("pt", "rmse", {1, 2, 3, 2, 1})
+                                 .curve("vcm", "rmse", {4, 2, 1, 0.5, 0.25})
+                                 .delay("pt", 100)
+                                 .judge(faster);
+  EXPECT_EQ(longer.figure, "to RMSE 1 vcm takes 4 s, pt 1600 s") << "no power of ten";
 }
 
 TEST(JudgeClaims, leadsAndBehind) {
@@ -125,6 +137,14 @@ TEST(JudgeClaims, reachesAndMisses) {
   EXPECT_EQ(below.verdict(misses), kHolds);
   EXPECT_EQ(near.verdict(reaches), kUndecided);
   EXPECT_EQ(near.verdict(misses), kUndecided);
+  // A score that an image without error misses as well.
+  const MadeUp noisy = MadeUp().with("pt", "ssim", {0.875, 0.875}).floor("ssim", 0.88);
+  EXPECT_EQ(noisy.verdict(reaches), kNotJudged);
+  EXPECT_EQ(noisy.judge(reaches).figure, "SSIM of pt is 0.875; the reference's noise alone gives 0.88");
+  EXPECT_EQ(MadeUp(above).floor("ssim", 0.88).verdict(reaches), kHolds) << "it is reached all the same";
+  EXPECT_EQ(MadeUp(below).floor("ssim", 0.95).verdict(reaches), kFails);
+  EXPECT_EQ(MadeUp().with("pt", "ssim", {0.4, 0.4}).floor("ssim", 0.45).verdict(misses), kNotJudged);
+  EXPECT_EQ(MadeUp(above).floor("ssim", 0.45).verdict(misses), kFails);
   // Runs without this metric, as of an image that is too small for it.
   const MadeUp other = MadeUp().with("pt", "rmse", {1, 1.1});
   EXPECT_EQ(other.verdict(reaches), kNotJudged);
@@ -145,6 +165,9 @@ TEST(JudgeClaims, stalls) {
   const ClaimRecord both = made(-0.02, -0.02).judge(stalls);
   EXPECT_EQ(both.verdict, kNotJudged) << "the control stalls as well, so something else does it";
   EXPECT_EQ(both.figure, "the control, vcm, may stall as well: slope -0.02");
+  const ClaimRecord without = MadeUp().slope("pt", {0}).errors("vcm", {0, 0, 0, 0, 0}, 1).judge(stalls);
+  EXPECT_EQ(without.verdict, kNotJudged) << "the control has no error above 0";
+  EXPECT_EQ(without.figure, "no error of the control, vcm, without the reference's noise was measured");
   EXPECT_EQ(MadeUp().with("pt", "rmse", {1, 1.1}).with("vcm", "rmse", {1, 1.1}).verdict(stalls), kNotJudged)
       << "RMSE has the reference's noise in it";
 }
@@ -272,6 +295,8 @@ TEST(JudgeClaims, whatWasNotMeasuredIsNotJudgedAndSaid) {
   EXPECT_EQ(absent.figure, "mlt-pathspace was not measured");
   EXPECT_EQ(refused.verdict, kNotJudged);
   EXPECT_EQ(refused.figure, "mlt-pathspace was refused");
+  EXPECT_EQ(MadeUp(made).curve("mlt-pathspace", "rmse", {}).judge(better).figure, "mlt-pathspace was not measured")
+      << "a run that is done, without a snapshot";
   EXPECT_EQ(MadeUp(made).with("mlt-pathspace", "rmse", {1, 1.01}).verdict(better), kHolds);
   const Condition wrongToo = condition(ConditionKind::better, "rmse", {"mlt", "lt"}, {"pt"});
   EXPECT_EQ(made.verdict(wrongToo), kFails) << "what was measured is enough to refute";
@@ -293,12 +318,30 @@ TEST(JudgeClaims, whatWasNotMeasuredRefutesNothing) {
   EXPECT_EQ(made(1).with("lt", "rmse", {2, 2.01}).verdict(poor), kFails) << "one of three is no majority";
 }
 
-TEST(JudgeClaims, differencesBelowTheReferencesNoiseAreNotJudged) {
-  const Condition better = condition(ConditionKind::better, "rmse", {"pt"}, {"lt"});
-  const MadeUp made = MadeUp().with("pt", "rmse", {1.2, 1.201}).with("lt", "rmse", {1.1, 1.101});
-  EXPECT_EQ(made.verdict(better), kFails);
-  EXPECT_EQ(MadeUp(made).floor("rmse", 1.0).verdict(better), kNotJudged) << "both are mostly the reference's noise";
-  EXPECT_EQ(MadeUp(made).floor("rmse", 0.1).verdict(better), kFails);
+TEST(JudgeClaims, nearTheReferencesNoiseWhatIsNotShownIsNotJudged) {
+  const Condition better = condition(ConditionKind::better, "rmse", {"pt"}, {"lt"}),
+                  opposite = condition(ConditionKind::better, "rmse", {"lt"}, {"pt"}),
+                  faster = condition(ConditionKind::faster, "rmse", {"pt"}, {"lt"});
+  // Both are mostly the reference's noise, which is the same for both.
+  const MadeUp apart = MadeUp().with("pt", "rmse", {1.2, 1.201}).with("lt", "rmse", {1.1, 1.101}).floor("rmse", 1.0);
+  EXPECT_EQ(apart.verdict(better), kFails);
+  EXPECT_EQ(apart.verdict(opposite), kHolds);
+  EXPECT_EQ(apart.verdict(faster), kFails);
+  const MadeUp overlapping = MadeUp().with("pt", "rmse", {1.15, 1.2}).with("lt", "rmse", {1.1, 1.18});
+  EXPECT_EQ(overlapping.verdict(better), kUndecided);
+  EXPECT_EQ(MadeUp(overlapping).floor("rmse", 1.0).verdict(better), kNotJudged);
+  EXPECT_EQ(MadeUp(overlapping).floor("rmse", 1.0).verdict(faster), kNotJudged);
+  EXPECT_EQ(MadeUp(overlapping).floor("rmse", 0.1).verdict(better), kUndecided);
+}
+
+TEST(JudgeClaims, nearTheReferencesNoiseLossesWithinAFactorMayBeBeyondIt) {
+  Condition good = condition(ConditionKind::good, "rmse", {"pt"}, {"lt"}),
+            opposite = condition(ConditionKind::good, "rmse", {"lt"}, {"pt"});
+  good.factor = opposite.factor = 1.5;
+  const MadeUp apart = MadeUp().with("pt", "rmse", {1.2, 1.201}).with("lt", "rmse", {1.1, 1.101});
+  EXPECT_EQ(apart.verdict(good), kHolds);
+  EXPECT_EQ(MadeUp(apart).floor("rmse", 1.0).verdict(good), kNotJudged);
+  EXPECT_EQ(MadeUp(apart).floor("rmse", 1.0).verdict(opposite), kHolds) << "lt is the better one";
 }
 
 // 0.02 of the study's light paths in a search, and a twelfth of its paths per pixel.
@@ -345,6 +388,8 @@ TEST(JudgeClaims, runsOfUnequalTimeAreNotCompared) {
   const ClaimRecord record = judgeClaim(claim, extended);
   EXPECT_EQ(record.verdict, kNotJudged);
   EXPECT_EQ(record.figure, "runs of 45 s and of 90 s stand side by side");
+  extended.runs.front().stats = R"({"asked_seconds": 1440})";
+  EXPECT_EQ(judgeClaim(claim, extended).figure, "runs of 45 s and of 1440 s stand side by side");
 }
 
 // A campaign that went on elsewhere: at equal times its runs have other numbers of paths.

@@ -55,6 +55,14 @@ class MadeUp {
     for (size_t k = 0; k < values.size(); ++k) snapshots[k].values[kUnbiasedMse] = values[k] * values[k];
     return *this;
   }
+  // Snapshots of a method at so many times their times.
+  MadeUp& delay(const std::string& method, double factor) {
+    for (RunRecord& run : results_.runs) {
+      if (run.method != method) continue;
+      for (SnapshotRecord& snapshot : run.snapshots) snapshot.renderSeconds *= factor;
+    }
+    return *this;
+  }
   MadeUp& floor(const std::string& metric, double value) {
     results_.scenes[0].noiseFloors[metric] = value;
     return *this;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "tests/bench/small_box.h"
 
@@ -40,6 +41,35 @@ TEST(WatchedSession, tellsNoErrorWhereItsFirstIterationIsTheSecondOfTwo) {
   const std::optional<uint64_t> ofFirst = iterationsUntilError(0), ofThird = iterationsUntilError(2);
   ASSERT_TRUE(ofFirst && ofThird);
   EXPECT_FALSE(errorAfter(2 * std::max(*ofFirst, *ofThird), 1));
+}
+
+// A session whose first iteration takes ten seconds by its clock, and the others none.
+class SlowSession final : public Session {
+ public:
+  explicit SlowSession(std::unique_ptr<Session> within) : within_(std::move(within)) {}
+  void renderUntil(std::optional<uint64_t> iterations, std::optional<double> /*seconds*/) override {
+    within_->renderUntil(iterations, std::nullopt);
+  }
+  RenderStatistics statistics() const override { return within_->statistics(); }
+  const Film& film() const override { return within_->film(); }
+  const MemoryPlan& memoryPlan() const override { return within_->memoryPlan(); }
+  void save(StateWriter& out) const override { within_->save(out); }
+  void restore(StateReader& in) override { within_->restore(in); }
+  double progressSeconds() const override { return statistics().iterations == 0 ? 0 : 10; }
+  uint64_t progressPaths() const override { return within_->progressPaths(); }
+
+ private:
+  const std::unique_ptr<Session> within_;
+};
+
+// The look after the first iteration, by which slices begin, is the one that is due then.
+TEST(WatchedSession, looksOnceAfterASlowFirstIteration) {
+  const RenderSettings settings = settingsOf(Method::pt);
+  size_t looks = 0;
+  WatchedSession session(std::make_unique<SlowSession>(Session::create(smallBox(32, 24), settings)), settings,
+                         [&](const std::shared_ptr<const Look>&) { ++looks; });
+  session.renderUntil(1, std::nullopt);
+  EXPECT_EQ(looks, 1u);
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "bench/ranks/sum_tree.h"
 #include "engine/state/state_stream.h"
 #include "tests/engine/rendered_session.h"
 #include "tests/engine/test_scenes.h"
@@ -54,9 +57,33 @@ TEST(FilmSumTest, contributionsOfProcessesAreOneRender) {
     if (sum.chains) {
       EXPECT_EQ(sum.chains->mutations, expected.chains->mutations);
       EXPECT_EQ(sum.chains->directPaths, expected.chains->directPaths);
+      // By the large steps of all chains, whose sums are rounded in another order.
+      const double pooled = expected.chains->pooledBrightness, error = expected.chains->pooledError;
+      EXPECT_NEAR(sum.chains->pooledBrightness, pooled, 1e-9 * pooled);
+      EXPECT_NEAR(sum.chains->pooledError, error, 1e-9 * error);
     }
     ASSERT_EQ(outer.processes().size(), kProcesses);
     for (uint32_t rank = 0; rank < kProcesses; ++rank) EXPECT_EQ(outer.processes()[rank].rank, rank);
+  }
+}
+
+// Films with splats and margins, the largest there are.
+TEST(FilmSumTest, memoryOfSumsIsThatOfTheirFilms) {
+  Scene scene = sceneFile("cornell-diffuse", 96, 64);
+  scene.film.filter = ReconstructionFilter::gaussian;
+  const RenderSettings settings = settingsOfSum(Method::vcm);
+  const auto session = Session::create(scene, settings);
+  ASSERT_TRUE(session->film().spreads() && session->film().hasSplats());
+  const auto bytes = static_cast<double>(contributionOf(*session, recordOf(0, 1, session->statistics())).size());
+  for (const uint32_t ranks : {2u, 3u, 8u}) {
+    // Of the process that holds most: its own film, those of its children, the sum's, and the sum that it sends on.
+    size_t most = 0;
+    for (uint32_t rank = 0; rank < ranks; ++rank) {
+      most = std::max(most, 2 + SumTree(rank, ranks).children().size() + (rank == 0 ? 0 : 1));
+    }
+    const double films = static_cast<double>(bytesOfSums(scene, settings, ranks)) / bytes;
+    EXPECT_GE(films, static_cast<double>(most)) << ranks;
+    EXPECT_LT(films, 1.25 * static_cast<double>(most)) << ranks;
   }
 }
 
