@@ -127,10 +127,10 @@ uint64_t iterationsOf(const Holdings& holdings) {
 
 // How many iterations depend on each other, counted from the image's first one.
 uint64_t runOf(const CheckpointHeader& header) {
-  RenderSettings settings;
-  if (header.render.value("sampler", "") == toString(SamplerKind::sobol)) settings.sampler = SamplerKind::sobol;
-  const auto spread = static_cast<size_t>(FilterMode::spread);
-  return independentRun(settings, header.render.value("filter_mode", "") == kFilterModeNames[spread]);
+  const bool sobol = header.render.value("sampler", "") == toString(SamplerKind::sobol);
+  const std::string_view spread = kFilterModeNames[static_cast<size_t>(FilterMode::spread)];
+  return independentRun(sobol ? SamplerKind::sobol : SamplerKind::independent,
+                        header.render.value("filter_mode", "") == spread);
 }
 
 // Why iterations of different parts depend on each other; empty: they do not. Parts that begin with a run are

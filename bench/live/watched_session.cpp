@@ -20,7 +20,7 @@ WatchedSession::WatchedSession(std::unique_ptr<Session> session, const RenderSet
     : session_(std::move(session)),
       taker_(std::move(taker)),
       blocks_(session_->film().area().width, session_->film().area().height, kErrorBlocks),
-      run_(independentRun(settings, session_->film().spreads())),
+      run_(independentRun(settings.sampler, session_->film().spreads())),
       errorKnowable_(blocks_.count() > 0 && whyNoFilmError(settings).empty() && settings.firstIteration % run_ == 0) {}
 
 template <class Step>

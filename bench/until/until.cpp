@@ -42,7 +42,7 @@ SsimNow renderUntilSsim(Session& session, const RenderSettings& settings, const 
 ErrorNow FilmErrorWatch::renderUntil(Session& session, const RenderSettings& settings, double relativeError) {
   const uint64_t most = settings.iterations.value_or(std::numeric_limits<uint64_t>::max());
   if (now_.iterations == 0 && slices_.slices().empty()) {
-    slices_ = FilmSlices(independentRun(settings, session.film().spreads()));
+    slices_ = FilmSlices(independentRun(settings.sampler, session.film().spreads()));
   }
   const bool endless = !settings.iterations && !settings.seconds;
   while (!now_.reached && !now_.black) {

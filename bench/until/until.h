@@ -55,8 +55,8 @@ class FilmErrorWatch {
 // an odd iteration has the mirror image of the place before (sharedPlace in kernels/endpoints/camera_lanes.h). The
 // places of all pairs are one Sobol sequence: short runs still depend on each other a little, and overestimate the
 // error.
-inline uint64_t independentRun(const RenderSettings& settings, bool spreads) {
-  if (settings.sampler == SamplerKind::sobol) return kSobolRun;
+inline uint64_t independentRun(SamplerKind sampler, bool spreads) {
+  if (sampler == SamplerKind::sobol) return kSobolRun;
   return spreads ? 2 : 1;
 }
 

@@ -7,7 +7,7 @@
 namespace wavecrest {
 namespace {
 
-// The kernel of a BSDF, by its roughness, distribution and anisotropy.
+// Which kernel evaluates a BSDF: that of its roughness, microfacet distribution and anisotropy.
 BsdfKind kindOf(const Diffuse&) { return BsdfKind::diffuse; }
 BsdfKind kindOf(const Conductor& conductor) {
   if (conductor.alphaV) {

@@ -2,6 +2,8 @@
 // is to become copies.
 #include <gtest/gtest.h>
 
+#include <span>
+
 #include "engine/plan/render_plan.h"
 #include "engine/scene/scene_error.h"
 #include "engine/tasks/flush_to_zero.h"
@@ -34,6 +36,21 @@ std::vector<WalkKind> allWalks() {
   return walks;
 }
 
+// Gives the wave these rays and no others.
+template <class S>
+void putRays(Wave<S>& wave, std::span<const RandomRay> rays) {
+  wave.setVertices(0, 0);
+  wave.rays.claim(rays.size());
+  for (size_t i = 0; i < rays.size(); ++i) {
+    wave.rays.originX[i] = static_cast<S>(rays[i].origin[0]);
+    wave.rays.originY[i] = static_cast<S>(rays[i].origin[1]);
+    wave.rays.originZ[i] = static_cast<S>(rays[i].origin[2]);
+    wave.rays.directionX[i] = static_cast<S>(rays[i].direction[0]);
+    wave.rays.directionY[i] = static_cast<S>(rays[i].direction[1]);
+    wave.rays.directionZ[i] = static_cast<S>(rays[i].direction[2]);
+  }
+}
+
 template <class S>
 class Bench {
  public:
@@ -49,7 +66,7 @@ class Bench {
     std::vector<Arrival> out;
     for (size_t first = 0; first < rays.size(); first += kCapacity) {
       const size_t count = std::min(kCapacity, rays.size() - first);
-      put(rays, first, count);
+      put(std::span(rays).subspan(first, count));
       context_.depth = walk.packets ? 1 : 2;
       const Stages<S>& stages = stagesOf(walk.isa);
       const Intersector<S> intersector = chooseIntersector(stages, *compiled_);
@@ -93,18 +110,10 @@ class Bench {
   }
 
  private:
-  void put(const std::vector<RandomRay>& rays, size_t first, size_t count) {
-    wave_.setVertices(0, 0);
-    wave_.rays.claim(count);
-    wave_.paths.claim(count);
-    for (size_t i = 0; i < count; ++i) {
-      const RandomRay& ray = rays[first + i];
-      wave_.rays.originX[i] = static_cast<S>(ray.origin[0]);
-      wave_.rays.originY[i] = static_cast<S>(ray.origin[1]);
-      wave_.rays.originZ[i] = static_cast<S>(ray.origin[2]);
-      wave_.rays.directionX[i] = static_cast<S>(ray.direction[0]);
-      wave_.rays.directionY[i] = static_cast<S>(ray.direction[1]);
-      wave_.rays.directionZ[i] = static_cast<S>(ray.direction[2]);
+  void put(std::span<const RandomRay> rays) {
+    putRays(wave_, rays);
+    wave_.paths.claim(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) {
       wave_.paths.throughputR[i] = wave_.paths.throughputG[i] = wave_.paths.throughputB[i] = 1;
       wave_.paths.dVCM[i] = wave_.paths.dVC[i] = wave_.paths.dVM[i] = wave_.paths.rouletteScale[i] = 1;
       wave_.paths.lane[i] = static_cast<uint32_t>(i);
@@ -205,16 +214,7 @@ TEST(Instances, ofTinySpheresAreMetAtTheirSurface) {
   }
   const FlushToZero flushToZero;
   for (const WalkKind& walk : allWalks()) {
-    wave.setVertices(0, 0);
-    wave.rays.claim(rays.size());
-    for (size_t i = 0; i < rays.size(); ++i) {
-      wave.rays.originX[i] = static_cast<float>(rays[i].origin[0]);
-      wave.rays.originY[i] = static_cast<float>(rays[i].origin[1]);
-      wave.rays.originZ[i] = static_cast<float>(rays[i].origin[2]);
-      wave.rays.directionX[i] = static_cast<float>(rays[i].direction[0]);
-      wave.rays.directionY[i] = static_cast<float>(rays[i].direction[1]);
-      wave.rays.directionZ[i] = static_cast<float>(rays[i].direction[2]);
-    }
+    putRays(wave, rays);
     context.depth = walk.packets ? 1 : 2;
     Bench<float>::stagesOf(walk.isa).extendInstances(context, wave);
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -258,16 +258,7 @@ TEST(Instances, inTheSamePlaceAreTakenInTheirOrder) {
   context.counters = &counters;
   const std::vector<RandomRay> rays = randomRays(kCapacity, 6, 3);
   for (const WalkKind& walk : allWalks()) {
-    wave.setVertices(0, 0);
-    wave.rays.claim(rays.size());
-    for (size_t i = 0; i < rays.size(); ++i) {
-      wave.rays.originX[i] = static_cast<float>(rays[i].origin[0]);
-      wave.rays.originY[i] = static_cast<float>(rays[i].origin[1]);
-      wave.rays.originZ[i] = static_cast<float>(rays[i].origin[2]);
-      wave.rays.directionX[i] = static_cast<float>(rays[i].direction[0]);
-      wave.rays.directionY[i] = static_cast<float>(rays[i].direction[1]);
-      wave.rays.directionZ[i] = static_cast<float>(rays[i].direction[2]);
-    }
+    putRays(wave, rays);
     context.depth = walk.packets ? 1 : 2;
     Bench<float>::stagesOf(walk.isa).extendInstances(context, wave);
     size_t first = 0;

@@ -191,4 +191,27 @@ inline Scene roomScene(const Room& room) {
   return scene;
 }
 
+// A floor under an even sky of radiance (1, 1, -0.5), a colour outside of Rec. 709. It reflects all blue and nothing
+// else. The camera above sees the floor's middle alone. With walls it is a box that is open above, of the same
+// material.
+inline Scene wideGamutScene(bool walls, uint32_t width, uint32_t height) {
+  Scene scene;
+  scene.name = "wide gamut";
+  const uint32_t blue = addDiffuse(scene, 0, 0, 1);
+  addShape(scene, Rectangle{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}}, blue);
+  if (walls) {  // facing inwards
+    addShape(scene, Rectangle{{-1, -1, 0}, {0, 2, 0}, {0, 0, 1}}, blue);
+    addShape(scene, Rectangle{{1, -1, 0}, {0, 0, 1}, {0, 2, 0}}, blue);
+    addShape(scene, Rectangle{{-1, -1, 0}, {0, 0, 1}, {2, 0, 0}}, blue);
+    addShape(scene, Rectangle{{-1, 1, 0}, {2, 0, 0}, {0, 0, 1}}, blue);
+  }
+  auto bitmap = std::make_shared<Bitmap>();
+  bitmap->width = bitmap->height = 1;
+  bitmap->pixels = {1, 1, -0.5f};
+  addEmitter(scene,
+             EnvmapEmitter{.bitmap = bitmap, .toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}});
+  setCamera(scene, {0, 0, 3}, 25, width, height);
+  return scene;
+}
+
 }  // namespace wavecrest

@@ -189,7 +189,8 @@ TEST_P(BsdfExtremesTest, aMatchedIndexLetsEverythingPass) {
   }
 }
 
-// Of the narrowest clear coat, alpha 0.001: 1 - cos^2 of its half vectors has few digits.
+// The half vectors of the narrowest clear coat, alpha 0.001, are so close to the normal that 1 - cos^2 has few digits
+// in float: the density needs sin^2.
 TEST_P(BsdfExtremesTest, aGlossyCoatKeepsItsDigitsInFloat) {
   const BsdfCase bsdf = bsdfCase("coat", Principled{.clearcoat = {1}, .clearcoatGloss = {1}});
   const auto drawn = [&](Precision precision) {

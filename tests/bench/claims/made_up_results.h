@@ -55,7 +55,7 @@ class MadeUp {
     for (size_t k = 0; k < values.size(); ++k) snapshots[k].values[kUnbiasedMse] = values[k] * values[k];
     return *this;
   }
-  // Snapshots of a method at so many times their times.
+  // Multiplies the times of all snapshots of a method by the factor.
   MadeUp& delay(const std::string& method, double factor) {
     for (RunRecord& run : results_.runs) {
       if (run.method != method) continue;

@@ -235,11 +235,11 @@ TEST(FilmErrorWatch, believesInAFilmWithoutVarianceOnlyAfterManyIterations) {
 TEST(FilmErrorWatch, saysWhichIterationsAreNotIndependent) {
   RenderSettings settings;
   EXPECT_EQ(whyNoFilmError(settings), "");
-  EXPECT_EQ(independentRun(settings, false), 1);
-  EXPECT_EQ(independentRun(settings, true), 2);
+  EXPECT_EQ(independentRun(settings.sampler, false), 1);
+  EXPECT_EQ(independentRun(settings.sampler, true), 2);
   settings.sampler = SamplerKind::sobol;
   EXPECT_EQ(whyNoFilmError(settings), "");
-  EXPECT_EQ(independentRun(settings, true), kSobolRun);
+  EXPECT_EQ(independentRun(settings.sampler, true), kSobolRun);
   settings.method = Method::mlt;
   EXPECT_NE(whyNoFilmError(settings), "");
 }
