@@ -33,7 +33,7 @@ TEST(Profiles, studyHasItsSizeLightPathsAndTimeForItsFindings) {
   EXPECT_EQ(study.effort("cornell-spheres").seconds, 12 * 60);
   EXPECT_EQ(study.effort("lafortune-room").seconds, 21 * 60);
   EXPECT_EQ(study.effort("pool-interior").seconds, 24 * 60);
-  EXPECT_EQ(study.effort("dragon-caustics-glossy").seconds, 28 * 60);
+  EXPECT_EQ(study.effort("dragon-caustics-glossy").seconds, 34 * 60);
   EXPECT_EQ(study.effort("veach-door").seconds, 41 * 60);
   EXPECT_EQ(study.effort("a-scene-of-others").seconds, 12 * 60);
   EXPECT_TRUE(study.effort("veach-door").logarithmicFirst);
