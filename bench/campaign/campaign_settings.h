@@ -38,7 +38,6 @@ struct Effort {
 // scenes; study and paper have the study's size, light paths, radius and roulette, paper its run times too.
 struct Profile {
   std::string_view name;
-  std::string_view description;  // one line
   std::array<uint32_t, 2> size;
   unsigned seeds;
   std::span<const CampaignMethod> rows;  // none: one of each method

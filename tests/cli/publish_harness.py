@@ -68,10 +68,10 @@ class PublishTest(CommandTest):
         self.write("published/measurements.csv", "\n".join(lines) + "\n")
         subprocess.run([sys.executable, RESTORE, "published", "a"], cwd=self.folder, check=True, capture_output=True)
 
-    def publish(self, readme=README, program=WAVECREST):
+    def publish(self, *options, readme=README, program=WAVECREST):
         if readme:
             self.write("README.md", readme)
-        command = [sys.executable, PUBLISH, "a", "--wavecrest", program, "--to", "standard", "--readme", "README.md"]
+        command = [sys.executable, PUBLISH, "a", "--wavecrest", program, "--to", "standard", "--readme", "README.md", *options]
         return subprocess.run(
             [*map(str, command)],
             cwd=self.folder,

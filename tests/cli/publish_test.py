@@ -249,7 +249,7 @@ END
 
     def test_a_readme_without_a_place_for_it_is_left_alone(self):
         self.campaign()
-        result = self.publish("# A title\n")
+        result = self.publish(readme="# A title\n")
         self.assertEqual(result.returncode, 1)
         self.assertIn("has no lines <!-- results -->", result.stderr)
         self.assertEqual(self.read("README.md"), "# A title\n")

@@ -3,6 +3,7 @@
 import csv
 import json
 import pathlib
+import re
 import shutil
 import sqlite3
 import subprocess
@@ -10,7 +11,7 @@ import sys
 import unittest
 
 from harness import INPUT, TIMEOUT_SECONDS, WAVECREST
-from publish_harness import RESTORE, ROOT, PublishTest
+from publish_harness import MADE_UP, RESTORE, ROOT, PublishTest
 
 
 class Restoring(PublishTest):
@@ -59,6 +60,65 @@ class Restoring(PublishTest):
         self.run_wavecrest(*more)
         self.assertEqual(len(rows("b", stored)), 12)
 
+    def test_scenes_under_way_are_published_beside_the_page_and_restored(self):
+        self.made_up_campaign()
+        database = sqlite3.connect(self.path("a/results.sqlite"))
+        for table in ("measurement", "snapshot"):
+            database.execute(f"DELETE FROM {table} WHERE run = (SELECT id FROM run WHERE scene = 'lafortune-room' AND method = 'pt')")
+        database.execute("DELETE FROM run WHERE scene = 'lafortune-room' AND method = 'pt'")
+        database.execute("UPDATE campaign SET value = value || ' pool-interior' WHERE key = 'scenes'")
+        options = json.dumps({"scenes": ["rooms/lafortune-room.xml", "veach-door"], "--crop": ["lafortune-room:1,2,3x4"]})
+        database.execute("INSERT OR REPLACE INTO campaign VALUES('options', ?)", [options])
+        database.commit()
+        database.close()
+        self.assertIn("lafortune-room pt", self.publish().stderr)
+        result = self.publish("--under-way")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        page = self.read("standard/README.md")
+        self.assertIn("veach-door", page)
+        self.assertFalse(pathlib.Path(self.path("standard/lafortune-room.svg")).exists())
+        self.assertNotIn("lafortune-room.svg", page)
+        self.assertNotIn("rooms/lafortune-room.xml", page)
+        self.assertNotIn("--crop", page)
+        self.assertNotIn("lafortune-room", self.read("standard/measurements.csv"))
+        facts = json.loads(self.read("standard/under-way/campaign.json"))
+        self.assertEqual([(run["scene"], run["method"]) for run in facts["runs"]], [("lafortune-room", "bpt")])
+        # Both are one campaign again.
+        subprocess.run([sys.executable, RESTORE, "standard", "b"], cwd=self.folder, check=True, capture_output=True)
+        stored = (
+            "SELECT scene, method, seed, state, number, metric, value FROM run LEFT JOIN measurement ON run = id ORDER BY 1, 2, 3, 5, 6",
+            "SELECT * FROM campaign ORDER BY key",
+            "SELECT * FROM noise_floor ORDER BY scene",
+        )
+        for query in stored:
+            rows = []
+            for folder in ("a", "b"):
+                database = sqlite3.connect(self.path(f"{folder}/results.sqlite"))
+                rows.append(database.execute(query).fetchall())
+                database.close()
+            self.assertEqual(rows[1], rows[0])
+        # Once all are finished or refused, nothing is under way.
+        database = sqlite3.connect(self.path("a/results.sqlite"))
+        refusal = "VALUES('lafortune-room', 'pt', 1, 'refused', 'cannot', '')"
+        database.execute(f"INSERT INTO run(scene, method, seed, state, reason, stats) {refusal}")
+        database.execute("UPDATE campaign SET value = replace(value, ' pool-interior', '') WHERE key = 'scenes'")
+        database.commit()
+        database.close()
+        self.assertEqual(self.publish("--under-way").returncode, 0)
+        self.assertIn("lafortune-room.svg", self.read("standard/README.md"))
+        self.assertFalse(pathlib.Path(self.path("standard/under-way")).exists())
+
+    def test_scenes_under_way_need_a_finished_one(self):
+        self.made_up_campaign({"lafortune-room": MADE_UP["lafortune-room"]})
+        database = sqlite3.connect(self.path("a/results.sqlite"))
+        for table in ("measurement", "snapshot"):
+            database.execute(f"DELETE FROM {table} WHERE run = 1")
+        database.execute("DELETE FROM run WHERE id = 1")
+        database.commit()
+        database.close()
+        self.assertIn("no scene is finished", self.publish("--under-way").stderr)
+        self.assertFalse(pathlib.Path(self.path("standard")).exists(), "nothing is written")
+
     def test_a_figure_is_repeated_by_all_rows(self):
         for name in ("bench", "scenes", "tools"):
             (self.folder / name).symlink_to(ROOT / name)
@@ -87,7 +147,14 @@ exec {WAVECREST} "$@"
         self.assertEqual(figure.count("<polyline"), 13 * 3, "thirteen rows by three metrics")
         self.assertIn("<image", figure)
         self.assertIn("open out/repeat-figure/page/cornell-mirror.svg", result.stdout)
-        self.assertIn("compare it with bench/campaign/study/cornell-mirror.svg", result.stdout)
+        # It names a published figure of the same rows.
+        (published,) = re.findall(r"compare it with (bench/campaign/[\w-]+)/cornell-mirror\.svg", result.stdout)
+        self.assertTrue(pathlib.Path(self.path(f"{published}/cornell-mirror.svg")).exists())
+
+        def rows(folder):
+            return json.loads(self.read(f"{folder}/campaign.json"))["settings"]["methods"]
+
+        self.assertEqual(rows(published), rows("out/repeat-figure/page"))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,143 @@
+"""What a results file has, and what is committed of it: campaign.json and measurements.csv."""
+
+import collections
+import csv
+import itertools
+import json
+import os
+import pathlib
+import sqlite3
+
+UNDER_WAY = "under-way"  # folder beside the committed data of finished scenes, with those of the others
+MEASURED = ["rmse", "relmse", "ssim", "q_mos", "flip", "unbiased_mse", "wall_seconds", "cpu_seconds"]
+RUN_FACTS = [
+    *("width", "height", "threads", "iterations", "camera_paths", "light_paths", "mutations", "radius", "radius_alpha"),
+    *("render_seconds", "render_wall_seconds", "cpu_seconds", "clock", "asked_seconds", "mlt", "direct_pass", "sampler"),
+    *("precision", "commit", "cpu"),
+]
+
+
+class Results:
+    """The results file of a campaign, of all scenes or of these."""
+
+    def __init__(self, folder, scenes=None):
+        database = sqlite3.connect(folder / "results.sqlite")
+
+        def rows(query):
+            """Those whose first column is one of the scenes."""
+            return [row for row in database.execute(query) if scenes is None or row[0] in scenes]
+
+        self.settings = dict(database.execute("SELECT key, value FROM campaign"))
+        self.own_references = self.settings.pop("reference_folder", None) is not None  # which is of this machine
+        done = rows("SELECT scene, method, seed, stats FROM run WHERE state = 'done'")
+        self.runs = [(*run, json.loads(stats)) for *run, stats in done]
+        # stats where the run had no time for a whole image
+        self.refused = rows("SELECT scene, method, seed, reason, stats FROM run WHERE state = 'refused'")
+        # As in the report's measurements.csv.
+        names = ("scene", "method", "seed", "snapshot", "seconds", "iterations", "metric", "value")
+        measured = rows(
+            "SELECT scene, method, seed, s.number, render_seconds, iterations, metric, value FROM run JOIN snapshot s ON s.run = id"
+            " JOIN measurement m ON m.run = id AND m.number = s.number ORDER BY id, s.number, metric"
+        )
+        self.measurements = [dict(zip(names, ("" if field is None else str(field) for field in row))) for row in measured]
+        self.floors = {}
+        for scene, metric, value in rows("SELECT scene, metric, value FROM noise_floor"):
+            self.floors.setdefault(scene, {})[metric] = value
+        self.hashes = dict(rows("SELECT name, scene_hash FROM scene"))
+        self.biases = rows("SELECT * FROM bias ORDER BY scene, method, number")
+        database.close()
+
+    def ahead(self):
+        """The (scene, method) that lack a seed and are not refused, of the scenes begun and of those asked for."""
+        begun = list(self.hashes)
+        others = [word for word in self.settings["scenes"].split() if word not in " ".join(begun).split()]
+        done = collections.Counter((scene, method) for scene, method, *_ in self.runs)
+        refused = {(scene, method) for scene, method, *_ in self.refused}
+        pairs = itertools.product(begun + others, self.settings["methods"].split())
+        return [pair for pair in pairs if done[pair] < int(self.settings["seeds"]) and (done[pair] or pair not in refused)]
+
+
+def without_scenes(folder, scenes, part):
+    """Makes of a campaign's folder one that these scenes are not of: `part`, empty before and on the same file system."""
+    whole, database = sqlite3.connect(folder / "results.sqlite"), sqlite3.connect(part / "results.sqlite")
+    whole.backup(database)  # also while the campaign goes on
+    whole.close()
+    for scene in scenes:
+        for table in ("measurement", "snapshot", "stage"):
+            database.execute(f"DELETE FROM {table} WHERE run IN (SELECT id FROM run WHERE scene = ?)", [scene])
+        for table in ("run", "noise_floor", "path_class", "bias"):
+            database.execute(f"DELETE FROM {table} WHERE scene = ?", [scene])
+        database.execute("DELETE FROM scene WHERE name = ?", [scene])
+    # Settings that name each scene: "a b", or "a=1 b=2".
+    gone = " ".join(scenes).split()  # a name may have blanks
+    for key in ("scenes", "time", "snapshots"):
+        for (value,) in database.execute("SELECT value FROM campaign WHERE key = ?", [key]).fetchall():
+            kept = " ".join(word for word in value.split() if word.partition("=")[0] not in gone)
+            database.execute("UPDATE campaign SET value = ? WHERE key = ?", [kept, key])
+    for (value,) in database.execute("SELECT value FROM campaign WHERE key = 'options'").fetchall():
+        options = json.loads(value)
+        # Words as they were typed: names or files.
+        options["scenes"] = [word for word in options.get("scenes", []) if pathlib.PurePath(word).stem not in scenes]
+        crops = [word for word in options.pop("--crop", []) if word.rpartition(":")[0] not in scenes]
+        if crops:
+            options["--crop"] = crops
+        database.execute("UPDATE campaign SET value = ? WHERE key = 'options'", [json.dumps(options)])
+    database.commit()
+    named = {file for (file,) in database.execute("SELECT reference_file FROM scene UNION SELECT file FROM snapshot")}
+    database.close()
+    # Hard links: the program refuses symbolic ones that lead out of a results folder.
+    for name in ("references", "images"):
+        for file in (folder / name).glob("*.exr"):
+            if f"{name}/{file.name}" in named:
+                (part / name).mkdir(exist_ok=True)
+                os.link(file, part / name / file.name)
+    return part
+
+
+def write_measurements(results, path):
+    """One line per snapshot, five digits: enough to draw every plot again."""
+    rows = {}
+    for row in results.measurements:
+        key = tuple(row[name] for name in ("scene", "method", "seed", "snapshot"))
+        entry = rows.setdefault(key, {"seconds": f"{float(row['seconds']):.4g}", "iterations": row["iterations"]})
+        if row["metric"] in MEASURED:
+            entry[row["metric"]] = f"{float(row['value']):.5g}" if row["value"] else ""
+    measured = [name for name in MEASURED if any(name in entry for entry in rows.values())]
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["scene", "method", "seed", "snapshot", "seconds", "iterations", *measured])
+        for key, entry in rows.items():
+            writer.writerow([*key, *(entry.get(name, "") for name in ("seconds", "iterations", *measured))])
+
+
+def run_facts(stats):
+    return {key: stats[key] for key in RUN_FACTS if key in stats}
+
+
+def write_campaign(results, path):
+    """What the measurements do not say and findings are judged by."""
+    facts = {
+        "settings": results.settings,
+        "scenes": {s: {"hash": code, "noise_floors": results.floors.get(s, {})} for s, code in results.hashes.items()},
+        "runs": [
+            {"scene": scene, "method": method, "seed": seed, "stats": run_facts(stats)}
+            for scene, method, seed, stats in results.runs
+        ],
+        "refused": [
+            {"scene": scene, "method": method, "seed": seed, "reason": reason, "stats": run_facts(json.loads(stats or "{}"))}
+            for scene, method, seed, reason, stats in results.refused
+        ],
+        "biases": results.biases,  # rows of the table
+        "own_references": results.own_references,
+    }
+    # A line for each run, refusal and bias, so that changes can be read.
+    lists = [(name, ",\n  ".join(json.dumps(entry) for entry in facts.pop(name))) for name in ("runs", "refused", "biases")]
+    parts = [json.dumps(facts, indent=1).removesuffix("\n}"), *(f' "{name}": [\n  {lines}\n ]' for name, lines in lists)]
+    path.write_text(",\n".join(parts) + "\n}\n", encoding="utf-8")
+
+
+def write_data(results, folder):
+    """campaign.json and measurements.csv, from which bench/campaign/restore makes a results file."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_campaign(results, folder / "campaign.json")
+    write_measurements(results, folder / "measurements.csv")
