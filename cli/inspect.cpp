@@ -54,7 +54,8 @@ void printFacts(const Scene& scene, const SceneInspection& facts) {
   fmt::print("{}\n\n", scene.name);
   fmt::print("BSDFs       {}\nlights      {}\ntextures    {}\n", listed(facts.bsdfs), listed(facts.lights),
              listed(facts.textures));
-  fmt::print("sensor      {}, {} x {}, {} filter\n", facts.sensor, scene.film.width, scene.film.height, facts.filter);
+  fmt::print("sensor      {}, {} x {}, {} filter\n", facts.sensor, scene.film.imageWidth(), scene.film.imageHeight(),
+             facts.filter);
   fmt::print("primitives  {} quads, {} triangles, {} spheres\n", facts.primitives.quads, facts.primitives.triangles,
              facts.primitives.spheres);
   if (facts.instances != 0) {
@@ -136,7 +137,6 @@ int runInspect(const InspectOptions& options) {
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
   takeProgramDefaults(settings);
-  settings.sampler = bestSampler(settings);
   // Scene and facts.
   const Scene scene = loadScene(options.scene);
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);

@@ -24,7 +24,8 @@ Rgb mean(const Texture& texture) {
 
 // The fourth texel of the cells of a baked attribute lies outside of their triangles (engine/load/mesh_attributes.h).
 bool isOutside(const BitmapTexture& texture, size_t pixel) {
-  return texture.ofMesh && pixel % texture.bitmap->width % 2 == 1 && pixel / texture.bitmap->width % 2 == 1;
+  return texture.attribute != nullptr && pixel % texture.bitmap->width % 2 == 1 &&
+         pixel / texture.bitmap->width % 2 == 1;
 }
 
 Rgb greatest(const Texture& texture) {

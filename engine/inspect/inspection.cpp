@@ -76,17 +76,10 @@ void countKinds(const Scene& scene, SceneInspection& out) {
   }
 }
 
-}  // namespace
-
-SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
-  // What the file says.
-  SceneInspection out;
-  countKinds(scene, out);
-  out.sensor = Sensor::kKindNames[static_cast<size_t>(scene.sensor.kind)];
-  out.filter = kFilterNames[static_cast<size_t>(scene.film.filter)];
-
-  // What it is compiled to.
-  const auto compiled = compileScene<float>(scene, settings.accel, true, settings.instancing);
+// What the scene is compiled to, for kernels of S.
+template <class S>
+void inspectCompiled(const Scene& scene, const RenderSettings& settings, SceneInspection& out) {
+  const auto compiled = compileScene<S>(scene, settings.accel, true, settings.instancing);
   out.groups = scene.groups.size();
   out.instances = scene.instances.size();
   out.keepsInstances = compiled->view.instances != nullptr;
@@ -102,11 +95,27 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
   out.accel = compiled->accel();
   out.hierarchyNodes = compiled->bvh ? compiled->bvh->nodes() : 0;
   out.bytesPerPrimitive = static_cast<double>(primitiveBytes(*compiled)) / out.primitives.total();
+}
 
+}  // namespace
+
+SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
+  // What the file says.
+  SceneInspection out;
+  countKinds(scene, out);
+  out.sensor = Sensor::kKindNames[static_cast<size_t>(scene.sensor.kind)];
+  out.filter = kFilterNames[static_cast<size_t>(scene.film.filter)];
+  // What it is compiled to.
+  if (settings.precision == Precision::doubled) {
+    inspectCompiled<double>(scene, settings, out);
+  } else {
+    inspectCompiled<float>(scene, settings, out);
+  }
   // What each method does with it, or why it refuses.
   for (const MethodEntry& entry : kMethods) {
     MethodInspection& row = out.methods.emplace_back();
     row.method = settings.method = entry.method;
+    if (!settings.samplerIsChosen) settings.sampler = bestSampler(settings);
     row.specialization = specializationFor(scene, settings);
     try {
       const DryPlan facts = planWithoutSession(scene, settings);
@@ -117,7 +126,7 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
     }
   }
   // Which paths the scene has.
-  out.paths = classifyPaths(scene);
+  out.paths = classifyPaths(findLinks(scene), settings.limits.maxDepth);
   return out;
 }
 

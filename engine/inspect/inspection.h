@@ -38,9 +38,9 @@ struct SceneInspection {
   PathClassTable paths;
 };
 
-// settings: what decides kernels, memory or the radius of merges counts, as precision, accel, instancing, wave size,
-// threads, radius, chains and the budget of memory; the method does not. Throws std::runtime_error where no method can
-// render the scene.
+// settings: what decides kernels, memory, the radius of merges or the path classes counts, as precision, accel,
+// instancing, wave size, threads, radius, chains, the budget of memory and the longest path; the method does not, and
+// the sampler does only if it is chosen. Throws std::runtime_error where no method can render the scene.
 SceneInspection inspectScene(const Scene& scene, RenderSettings settings);
 
 }  // namespace wavecrest

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "engine/plan/render_settings.h"
+
 namespace wavecrest {
 namespace {
 
@@ -62,6 +64,12 @@ std::string signatureOf(const PathBits& bits) {
   return text + "E";
 }
 
+// Edges of the shortest path of a class.
+uint32_t fewestEdges(const PathBits& bits) {
+  if (!bits.hasD) return 2;
+  return 2 + (bits.firstD ? 0u : 1u) + (bits.hasDD ? 1u : 0u) + (bits.lastD ? 0u : 1u);
+}
+
 // The class in words.
 std::string describe(const PathBits& bits) {
   if (!bits.hasD) return "lights seen in specular surfaces";
@@ -75,8 +83,9 @@ std::string describe(const PathBits& bits) {
   return text;
 }
 
-// The classes of the paths that the scene's links allow: a reachable prefix whose last event the eye sees.
-std::vector<PathClass> findClasses(const SceneLinks& links) {
+// The classes of the paths that the scene's links and its depth allow: a reachable prefix whose last event the eye
+// sees.
+std::vector<PathClass> findClasses(const SceneLinks& links, uint32_t mostEdges) {
   std::vector<PathClass> classes;
   if (links.eyeMeetsLight) classes.push_back({"A E", "lights in view", {}, {}});
   for (const LightKindOfPath light : {LightKindOfPath::extended, LightKindOfPath::delta}) {
@@ -88,6 +97,7 @@ std::vector<PathClass> findClasses(const SceneLinks& links) {
       bits.lastD = path.lastIsD;
       // From a delta light over delta lobes alone nothing reaches an image, by any method.
       if (bits.deltaLight && !bits.hasD) continue;
+      if (fewestEdges(bits) > mostEdges) continue;
       if (std::find(seen.begin(), seen.end(), bits) == seen.end()) seen.push_back(bits);
     }
     // Plain ones first: without specular events, then with more and more of them.
@@ -208,10 +218,10 @@ Verdict PathClassTable::verdict(const PathClass& pathClass, Method method) const
   return pathClass.verdicts[static_cast<size_t>(method)];
 }
 
-PathClassTable classifyPaths(const SceneLinks& links) {
+PathClassTable classifyPaths(const SceneLinks& links, uint32_t mostEdges) {
   PathClassTable table;
   const Judge judge{links};
-  table.classes = findClasses(links);
+  table.classes = findClasses(links, mostEdges);
   for (PathClass& pathClass : table.classes) {
     for (const MethodEntry& entry : kMethods) {
       pathClass.verdicts.push_back(judge.verdict(strategiesOf(entry.method), pathClass.bits));
@@ -221,6 +231,8 @@ PathClassTable classifyPaths(const SceneLinks& links) {
   return table;
 }
 
-PathClassTable classifyPaths(const Scene& scene) { return classifyPaths(findLinks(scene)); }
+PathClassTable classifyPaths(const Scene& scene) {
+  return classifyPaths(findLinks(scene), pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth).maxDepth);
+}
 
 }  // namespace wavecrest

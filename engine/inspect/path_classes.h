@@ -3,10 +3,13 @@
 //
 // A path is a light, events and the eye. Events with delta lobes are S, others D. Whether a strategy can make a path
 // depends only on the light's kind and on where D stands, so paths with the same answers form a class. Classes are
-// listed for the links that exist in the scene (engine/inspect/scene_links.h), each under its shortest path.
+// listed for the links that exist in the scene (engine/inspect/scene_links.h), each under its shortest path. Those
+// whose shortest path is longer than the scene's paths may be are left out.
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,10 +53,10 @@ struct PathClassTable {
   Verdict verdict(const PathClass& pathClass, Method method) const;
 };
 
-// The table of a scene with these links.
-PathClassTable classifyPaths(const SceneLinks& links);
+// The table of a scene with these links, whose paths have at most so many edges.
+PathClassTable classifyPaths(const SceneLinks& links, uint32_t mostEdges = std::numeric_limits<uint32_t>::max());
 
-// The table of a scene. Throws std::runtime_error where the scene cannot be rendered.
+// The table of a scene with the `max_depth` of its file. Throws std::runtime_error where the scene cannot be rendered.
 PathClassTable classifyPaths(const Scene& scene);
 
 }  // namespace wavecrest

@@ -13,7 +13,6 @@ void readAnyCoating(LoadContext& context, Parameters& parameters, Material& mate
   Plastic plastic;
   plastic.intIor = parameters.ior("int_ior", "bk7");
   plastic.extIor = parameters.ior("ext_ior", "air");
-  plastic.specularReflectance = readTexturedRgb(context, parameters, "specular_reflectance", 1);
   plastic.nonlinear = true;
   if (rough) {
     const std::string distribution = toLower(parameters.string("distribution", "beckmann"));
@@ -34,6 +33,8 @@ void readAnyCoating(LoadContext& context, Parameters& parameters, Material& mate
     }
   }
   readBsdf(context, parameters.onlyObject("bsdf"), material);  // which may also be two-sided or have a map
+  // After the base's reflectance, as that of plastic: textures are numbered as they are read.
+  plastic.specularReflectance = readTexturedRgb(context, parameters, "specular_reflectance", 1);
   const auto* diffuse = std::get_if<Diffuse>(&material.kind);
   if (diffuse == nullptr || material.opacity) {
     context.unsupported(parameters.location(),

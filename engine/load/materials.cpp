@@ -27,8 +27,8 @@ std::pair<double, double> rangeOf(const Texture& texture) {
   const Bitmap& bitmap = *image.bitmap;
   // Of a mesh attribute only the corners of triangles: the other texels lie outside and are extrapolated.
   std::vector<float> corners;
-  if (image.ofMesh) corners = unbakedAttribute(bitmap, size_t{bitmap.width} * bitmap.height / 4).values;
-  const std::vector<float>& pixels = image.ofMesh ? corners : bitmap.pixels;
+  if (image.attribute != nullptr) corners = unbakedAttribute(bitmap, size_t{bitmap.width} * bitmap.height / 4).values;
+  const std::vector<float>& pixels = image.attribute != nullptr ? corners : bitmap.pixels;
   if (pixels.empty()) return {0, 0};
   const auto [least, most] = std::ranges::minmax(pixels);
   if (least >= 0 || bitmap.channels != 3 || pixels.size() == 3) return {least, most};
@@ -72,7 +72,13 @@ TexturedRgb readTextured(LoadContext& context, Parameters& parameters, std::stri
   if (element->get("type") == "rawconstant") {
     const Texture texture = readTexture(context, *element);
     checkRange(context, texture, role, where);
-    return {.value = constantOf(texture)};
+    const Rgb value = constantOf(texture);
+    // A number is at least 0 in all forms.
+    if (role == ColorRole::unbounded && std::ranges::min(value) < 0) {
+      throw LoadError(where, inQuotes(name) + " has a value of " + std::to_string(std::ranges::min(value)) +
+                                 "; expected 0 to 3.4e38");
+    }
+    return {.value = value};
   }
   const uint32_t texture = textureOf(context, *element);
   checkRange(context, context.scene.textures[texture], role, where);

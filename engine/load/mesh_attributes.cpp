@@ -163,20 +163,20 @@ Texture readMeshAttribute(LoadContext& context, Parameters& parameters) {
     throw LoadError(parameters.locationOf("name"),
                     "attribute " + inQuotes(name) + " of a mesh; expected a name that starts with vertex_ or face_");
   }
-  std::shared_ptr<const Bitmap> bitmap = context.attributeBitmap;
-  const bool ofMesh = bitmap != nullptr;
-  if (!ofMesh) {
+  BitmapTexture texture{.bitmap = context.attributeBitmap,
+                        .filter = Filter::bilinear,
+                        .wrap = Wrap::clamp,
+                        .attribute = context.attributeBitmap,
+                        .attributeScale = scale};
+  if (texture.attribute == nullptr) {
     // Outside of a mesh there is no attribute, and the texture is black.
-    bitmap = std::make_shared<Bitmap>(Bitmap{.width = 1, .height = 1, .channels = 3, .pixels = {0, 0, 0}});
+    texture.bitmap = std::make_shared<Bitmap>(Bitmap{.width = 1, .height = 1, .channels = 3, .pixels = {0, 0, 0}});
   } else if (scale != 1) {
-    auto scaled = std::make_shared<Bitmap>(*bitmap);
+    auto scaled = std::make_shared<Bitmap>(*texture.attribute);
     for (float& value : scaled->pixels) value = static_cast<float>(scale * value);
-    bitmap = std::move(scaled);
+    texture.bitmap = std::move(scaled);
   }
-  return {
-      .kind =
-          BitmapTexture{.bitmap = std::move(bitmap), .filter = Filter::bilinear, .wrap = Wrap::clamp, .ofMesh = ofMesh},
-      .toUv = identityMatrix()};
+  return {.kind = std::move(texture), .toUv = identityMatrix()};
 }
 
 }  // namespace wavecrest

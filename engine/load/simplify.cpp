@@ -47,10 +47,22 @@ std::optional<Rgb> onlyColour(const Texture& texture) {
   return colour;
 }
 
+// Whether a surface is diffuse and takes all light that arrives.
+bool isBlack(const Material& material) {
+  const auto* diffuse = std::get_if<Diffuse>(&material.kind);
+  return diffuse != nullptr && diffuse->reflectance.texture == kNone && diffuse->reflectance.value == Rgb{0, 0, 0} &&
+         !material.opacity;
+}
+
+// Whether light may go straight on through a part: a mask, or a boundary that may be between equal indices.
+bool mayPass(const Material& material) {
+  return material.opacity.has_value() || std::holds_alternative<Dielectric>(material.kind);
+}
+
 // Replaces textures of one colour by that colour, with a function for each kind of value and each kind of BSDF.
 class Simplifier {
  public:
-  explicit Simplifier(const Scene& scene) {
+  explicit Simplifier(const Scene& scene) : scene_(scene) {
     for (const Texture& texture : scene.textures) colours_.push_back(onlyColour(texture));
   }
 
@@ -90,7 +102,9 @@ class Simplifier {
       (*this)(*value);
     }
   }
-  // A weight texture of one value becomes two constant weights. Parts of weight 0 are removed, but one part stays.
+  // A weight texture of one value becomes two constant weights. Parts of weight 0 are removed, then black ones, but one
+  // part stays. The weights of the others stay as they are: what they lack of 1 together is absorbed. Beside a part
+  // that light passes, black stays: what is absorbed without it would tint that light (METHODS 3.10).
   void operator()(Blend& blend) const {
     if (blend.weightTexture != kNone) {
       TexturedFloat weight{0, blend.weightTexture};
@@ -100,11 +114,16 @@ class Simplifier {
       blend.weightTexture = kNone;
       blend.weights = {1 - second, second};
     }
-    for (size_t i = blend.materials.size(); i-- > 0;) {
-      if (blend.weights[i] != 0 || blend.materials.size() == 1) continue;
-      blend.materials.erase(blend.materials.begin() + static_cast<ptrdiff_t>(i));
-      blend.weights.erase(blend.weights.begin() + static_cast<ptrdiff_t>(i));
-    }
+    const auto remove = [&blend](const auto& isNone) {
+      for (size_t i = blend.materials.size(); i-- > 0 && blend.materials.size() > 1;) {
+        if (!isNone(i)) continue;
+        blend.materials.erase(blend.materials.begin() + static_cast<ptrdiff_t>(i));
+        blend.weights.erase(blend.weights.begin() + static_cast<ptrdiff_t>(i));
+      }
+    };
+    remove([&](size_t i) { return blend.weights[i] == 0; });
+    if (std::ranges::any_of(blend.materials, [&](uint32_t part) { return mayPass(scene_.materials[part]); })) return;
+    remove([&](size_t i) { return isBlack(scene_.materials[blend.materials[i]]); });
   }
   // Any other kind of BSDF stays as it is.
   template <class Kind>
@@ -136,6 +155,7 @@ class Simplifier {
 
   std::optional<Rgb> colourOf(uint32_t texture) const { return texture == kNone ? std::nullopt : colours_[texture]; }
 
+  const Scene& scene_;
   std::vector<std::optional<Rgb>> colours_;
 };
 

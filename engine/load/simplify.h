@@ -11,7 +11,8 @@ namespace wavecrest {
 // Removes, in place:
 //  - vertex normals of a mesh where all of them equal the normals of their faces up to kFlatSine2;
 //  - textures of one colour, which become that colour; bump maps of one height, normal maps that map to the normal;
-//  - opacities of one.
+//  - opacities of one;
+//  - parts of blends that have no weight, or are black where light passes no other part.
 void simplifyScene(Scene& scene);
 
 // The squared sine of the angle between a vertex normal and its face's up to which they are the same: an angle of

@@ -67,7 +67,12 @@ Rgb readAlbedo(LoadContext& context, Parameters& parameters, double fallback) {
   if (element->isObject() && element->tag == "texture") {
     throw LoadError(element->location(), "albedo of the ground is a texture; expected one colour");
   }
-  return readColor(context, *element, ColorRole::reflectance);
+  const Rgb albedo = readColor(context, *element, ColorRole::reflectance);
+  // An object may be above 1.
+  if (std::ranges::max(albedo) > 1) {
+    throw LoadError(element->location(), "albedo of the ground is above 1; expected values from 0 to 1");
+  }
+  return albedo;
 }
 
 double readScale(Parameters& parameters, std::string_view name, double fallback) {
@@ -120,7 +125,7 @@ EmitterKind readSunsky(LoadContext& context, Parameters& parameters) {
     sky.sunAperture = std::clamp(scaled, kSmallestAperture, 90.0);
     for (size_t i = 0; i < 3; ++i) {  // z up instead of y
       const auto row = toWorld[i];
-      sky.toWorld[i] = {row[0], -row[2], row[1], row[3]};
+      sky.toWorld[i] = {row[0], 0 - row[2], row[1], row[3]};  // 0 for 0, where -row[2] is -0
     }
     parameters.ignore({"resolution", "sun_samples"});
     parameters.leaveOut({"stretch", "extend"}, "left out: nothing shines below the horizon");

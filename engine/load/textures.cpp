@@ -1,5 +1,8 @@
 #include "engine/load/textures.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "engine/load/bitmap_file.h"
 #include "engine/load/color.h"
 #include "engine/load/materials.h"
@@ -107,8 +110,14 @@ std::shared_ptr<const Bitmap> readChannel(Parameters& parameters, const std::sha
 Rgb readRawValue(LoadContext& context, Parameters& parameters) {
   const XmlElement* element = parameters.element("value");
   if (!element) throw LoadError(parameters.location(), parameters.describe() + " has no value; expected one");
-  if (element->tag == "vector" || element->tag == "point") return *parameters.vector("value");
-  return readColor(context, *element, ColorRole::unbounded);
+  if (element->tag != "vector" && element->tag != "point") return readColor(context, *element, ColorRole::unbounded);
+  const Double3 value = *parameters.vector("value");
+  constexpr double kMost = double{std::numeric_limits<float>::max()};
+  if (std::ranges::any_of(value, [](double v) { return v < -kMost || v > kMost; })) {
+    throw LoadError(parameters.locationOf("value"), inQuotes("value") + " of " + parameters.describe() +
+                                                        " is out of range; expected values up to 3.4e38");
+  }
+  return value;
 }
 
 // A bitmap of one pixel.

@@ -1,5 +1,6 @@
 #include "engine/load/values.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -99,10 +100,13 @@ std::string toLower(std::string_view text) {
 
 std::string inQuotes(std::string_view text) {
   constexpr size_t kLongest = 60;
+  // End between two characters of UTF-8, whose second and further bytes are 10xxxxxx.
+  size_t end = std::min(text.size(), kLongest);
+  while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;
   std::string result = "\"";
   // Replace control characters. The test c >= 0 keeps bytes of UTF-8, which are negative where char is signed.
-  for (const char c : text.substr(0, kLongest)) result += (c >= 0 && c < ' ') || c == 127 ? '?' : c;
-  return result + (text.size() > kLongest ? "…\"" : "\"");
+  for (const char c : text.substr(0, end)) result += (c >= 0 && c < ' ') || c == 127 ? '?' : c;
+  return result + (end < text.size() ? "…\"" : "\"");
 }
 
 }  // namespace wavecrest

@@ -16,10 +16,10 @@ namespace wavecrest {
 
 namespace {
 
-// Bounds on what untrusted XML may ask for. Real scenes nest about 8 deep.
-constexpr int kDeepestNesting = 64, kDeepestInclude = 15;
-constexpr size_t kMostElements = 1'000'000, kMostAttributes = 16;
-constexpr size_t kLargestXml = 32 << 20;
+constexpr XmlLimits kXmlLimits{};
+// Further bounds on untrusted XML.
+constexpr int kDeepestInclude = 15;
+constexpr size_t kMostAttributes = 16;
 
 // Tags of plugins. A <spectrum> is a plugin only if it has a type; XmlElement::isObject checks that.
 constexpr std::array<std::string_view, 14> kObjectTags = {"scene",  "bsdf",    "emitter", "film",    "integrator",
@@ -94,9 +94,9 @@ XmlElement XmlReader::readFile(const std::filesystem::path& path, const SourceLo
   // Read the file. Only the scene file itself can be standard input; an included "-" is a file of that name.
   const bool fromStandardInput = openFiles_.empty() && path == kStandardInput;
   const std::vector<char> text =
-      fromStandardInput ? readStandardInput(kLargestXml) : readInputFile(path, namedAt, kLargestXml);
+      fromStandardInput ? readStandardInput(kXmlLimits.bytes) : readInputFile(path, namedAt, kXmlLimits.bytes);
   byteCount_ += text.size();
-  if (byteCount_ > kLargestXml) {
+  if (byteCount_ > kXmlLimits.bytes) {
     throw LoadError(namedAt, "scene and its includes exceed 32 MiB of XML; expected a smaller description");
   }
   document_.files.push_back(path.string());
@@ -138,13 +138,13 @@ XmlElement XmlReader::readElement(const OpenFile& file, const pugi::xml_node& no
   element.line = file.lines->lineOf(node.offset_debug());
   element.tag = node.name();
   // Stop hostile input.
-  if (depth > kDeepestNesting) {
+  if (depth > kXmlLimits.nesting) {
     throw LoadError(element.location(),
-                    "elements nest deeper than " + std::to_string(kDeepestNesting) + "; expected a flatter scene");
+                    "elements nest deeper than " + std::to_string(kXmlLimits.nesting) + "; expected a flatter scene");
   }
-  if (++elementCount_ > kMostElements) {
-    throw LoadError(element.location(),
-                    "more than " + std::to_string(kMostElements) + " elements; expected meshes to be in mesh files");
+  if (++elementCount_ > kXmlLimits.elements) {
+    throw LoadError(element.location(), "more than " + std::to_string(kXmlLimits.elements) +
+                                            " elements; expected meshes to be in mesh files");
   }
   // Copy the attributes, each of which may be given once.
   for (const pugi::xml_attribute& attribute : node.attributes()) {

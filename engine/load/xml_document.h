@@ -17,6 +17,12 @@
 
 namespace wavecrest {
 
+// Bounds on what untrusted XML may ask for, over all files of a scene. Real scenes nest about 8 deep.
+struct XmlLimits {
+  int nesting = 64;
+  size_t elements = 1'000'000, bytes = 32 << 20;
+};
+
 struct XmlElement {
   std::string tag;
   std::vector<std::pair<std::string, std::string>> attributes;

@@ -8,12 +8,6 @@ namespace {
 
 constexpr Rgb kWhite{1, 1, 1};
 
-// Whether a constant is outside of [0, 1]. It is written as a `rawconstant` texture, which takes values above 1.
-bool isRaw(const TexturedRgb& value) {
-  const auto outside = [](double v) { return v < 0 || v > 1; };
-  return value.texture == kNone && (outside(value.value[0]) || outside(value.value[1]) || outside(value.value[2]));
-}
-
 // Whether the plugin is the rough one. The loader keeps roughness of rough plugins above 0.
 bool isRough(const TexturedFloat& alpha) { return alpha.texture != kNone || alpha.value != 0; }
 
@@ -94,10 +88,10 @@ class BsdfWriter {
 
  private:
   void start(const char* type) { node_ = addObject(parent_, "bsdf", type, id_); }
-  // A colour or texture, by name.
+  // A colour, which may be above 1, or a texture, by name.
   void reflectance(const char* name, const TexturedRgb& value) {
-    if (!isRaw(value)) return addTexturedRgb(context_, node_, name, value);
-    addVector(addObject(node_, "texture", "rawconstant", "", name), "value", value.value);
+    if (value.texture == kNone && std::ranges::max(value.value) > 1) return addUnbounded(node_, name, value.value);
+    addTexturedRgb(context_, node_, name, value);
   }
   // A factor that is 1 unless a file says otherwise, in [0, 1] or not.
   void factor(const char* name, const TexturedRgb& value) {
@@ -164,8 +158,8 @@ class AdapterWriter {
   }
   // Either order is the same material. Textures are numbered as they are read, so the first one is outside.
   bool mapBeforeMask() const {
-    return material_.opacity && material_.opacity->texture != kNone && material_.bumpTexture != kNone &&
-           material_.bumpTexture < material_.opacity->texture;
+    const uint32_t map = std::min(material_.bumpTexture, material_.normalTexture);  // kNone is above all
+    return material_.opacity && material_.opacity->texture != kNone && map < material_.opacity->texture;
   }
   void mask() {
     if (material_.opacity) addTexturedFloat(context_, open("mask"), "opacity", *material_.opacity);

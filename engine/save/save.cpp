@@ -2,11 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <sstream>
 #include <system_error>
 
 #include "engine/save/sections.h"
 #include "engine/scene/hash_text.h"
+#include "engine/scene/scene_error.h"
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image.h"
 
@@ -16,15 +18,39 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string textOf(const pugi::xml_document& document) {
-  std::ostringstream text;
-  document.save(text, "  ", pugi::format_indent | pugi::format_no_declaration);
-  return std::move(text).str();
+// Counts elements, and how deep they nest.
+struct ElementCounter : pugi::xml_tree_walker {
+  bool for_each(pugi::xml_node& node) override {
+    if (node.type() != pugi::node_element) return true;
+    ++elements;
+    deepest = std::max(deepest, depth() + 1);
+    return true;
+  }
+  size_t elements = 0;
+  int deepest = 0;
+};
+
+// The text of the file. SceneError where the loader would refuse it.
+std::string textOf(pugi::xml_document& document, const fs::path& xml, const XmlLimits& limits) {
+  const auto require = [&](size_t has, size_t most, const char* what) {
+    if (has <= most) return;
+    throw SceneError({xml.string(), 0},
+                     fmt::format("would have {} {}; expected at most {}, or it could not be read", has, what, most));
+  };
+  ElementCounter counter;
+  document.traverse(counter);
+  require(counter.elements, limits.elements, "elements");
+  require(static_cast<size_t>(counter.deepest), static_cast<size_t>(limits.nesting), "levels of elements");
+  std::ostringstream stream;
+  document.save(stream, "  ", pugi::format_indent | pugi::format_no_declaration);
+  std::string text = std::move(stream).str();
+  require(text.size(), limits.bytes, "bytes");
+  return text;
 }
 
 }  // namespace
 
-SavePlan planSave(const Scene& scene, const fs::path& xml) {
+SavePlan planSave(const Scene& scene, const fs::path& xml, const XmlLimits& limits) {
   if (xml.stem().empty()) throw std::runtime_error(xml.string() + ": expected the name of an XML file");
   const std::string folder = xml.stem().string() + "-files";
   SavePlan plan{.folder = xml.parent_path() / folder, .files = {}, .notes = {}};
@@ -45,7 +71,7 @@ SavePlan planSave(const Scene& scene, const fs::path& xml) {
   saveEmitters(context);
 
   plan.files = assets.takeFiles();
-  plan.files.push_back({xml, [xml, text = textOf(document)] { writeFileAtomically(xml.string(), text); }});
+  plan.files.push_back({xml, [xml, text = textOf(document, xml, limits)] { writeFileAtomically(xml.string(), text); }});
   return plan;
 }
 

@@ -10,6 +10,7 @@
 #include <functional>
 #include <vector>
 
+#include "engine/load/xml_document.h"
 #include "engine/scene/scene.h"
 
 namespace wavecrest {
@@ -26,8 +27,8 @@ struct SavePlan {
 };
 
 // What would be written; writes nothing, so that the names can be checked first. `scene` must outlive the plan. Throws
-// std::runtime_error where `xml` has no stem.
-SavePlan planSave(const Scene& scene, const std::filesystem::path& xml);
+// std::runtime_error where `xml` has no stem, SceneError where the XML file would be beyond what the loader reads.
+SavePlan planSave(const Scene& scene, const std::filesystem::path& xml, const XmlLimits& limits = {});
 
 // Makes the folder and writes all files. Throws ImageError.
 void saveScene(const SavePlan& plan);

@@ -105,7 +105,7 @@ std::vector<uint32_t> findScalarSources(const Scene& scene, const std::set<uint3
   return sources;
 }
 
-// The bitmap of a mesh attribute, if all textures of a shape have it; else null.
+// The bitmap of a mesh attribute, if all textures of a shape are made of it; else null.
 const Bitmap* attributeOf(const SaveContext& context, const Shape& shape) {
   TextureUses uses;
   if (shape.material != kNone) {
@@ -127,9 +127,9 @@ const Bitmap* attributeOf(const SaveContext& context, const Shape& shape) {
   const Bitmap* found = nullptr;
   for (const uint32_t index : all) {
     const auto* texture = std::get_if<BitmapTexture>(&context.scene.textures[index].kind);
-    if (texture == nullptr || !texture->ofMesh) return nullptr;
-    if (found != nullptr && found != texture->bitmap.get()) return nullptr;
-    found = texture->bitmap.get();
+    if (texture == nullptr || texture->attribute == nullptr) return nullptr;
+    if (found != nullptr && found != texture->attribute.get()) return nullptr;
+    found = texture->attribute.get();
   }
   return found;
 }
@@ -148,9 +148,7 @@ void saveBitmap(SaveContext& context, const BitmapTexture& texture, bool isData,
 void addSquare(pugi::xml_node node, const char* name, const Rgb& color) {
   if (std::ranges::max(color) <= 1) return addRgb(node, name, color);
   if (color[0] == color[1] && color[0] == color[2]) return addFloat(node, name, color[0]);
-  const pugi::xml_node spectrum = addObject(node, "spectrum", "srgb", {}, name);
-  addRgb(spectrum, "color", color);
-  addBoolean(spectrum, "unbounded", true);
+  addUnbounded(node, name, color);
 }
 
 // Writes one texture. isNumber: it is asked for as a number, and has no source. isData: it is not asked for as a
@@ -158,10 +156,13 @@ void addSquare(pugi::xml_node node, const char* name, const Rgb& color) {
 void saveTexture(SaveContext& context, const Texture& texture, bool isNumber, bool isData, const std::string& id) {
   const auto* bitmap = std::get_if<BitmapTexture>(&texture.kind);
   const auto& attributes = context.meshAttributes;
-  if (bitmap != nullptr && std::find(attributes.begin(), attributes.end(), bitmap->bitmap.get()) != attributes.end()) {
+  if (bitmap != nullptr && bitmap->attribute != nullptr &&
+      std::ranges::find(attributes, bitmap->attribute.get()) != attributes.end()) {
     const pugi::xml_node attribute = addObject(context.root, "texture", "mesh_attribute", id);
     // The name follows from the number of channels.
-    return addString(attribute, "name", unbakedAttribute(*bitmap->bitmap, 0).name);
+    addString(attribute, "name", unbakedAttribute(*bitmap->attribute, 0).name);
+    if (bitmap->attributeScale != 1) addFloat(attribute, "scale", bitmap->attributeScale);
+    return;
   }
   pugi::xml_node node = addObject(context.root, "texture", bitmap != nullptr ? "bitmap" : "checkerboard", id);
   if (bitmap != nullptr) {

@@ -55,6 +55,11 @@ void addString(pugi::xml_node parent, const char* name, const std::string& value
 void addRgb(pugi::xml_node parent, const char* name, const Rgb& value) {
   addValue(parent, "rgb", name, fmt::format("{}", fmt::join(value, ", ")));
 }
+void addUnbounded(pugi::xml_node parent, const char* name, const Rgb& value) {
+  const pugi::xml_node spectrum = addObject(parent, "spectrum", "srgb", {}, name);
+  addRgb(spectrum, "color", value);
+  addBoolean(spectrum, "unbounded", true);
+}
 void addPoint(pugi::xml_node parent, const char* name, const Double3& value) {
   addValue(parent, "point", name, fmt::format("{}", fmt::join(value, ", ")));
 }

@@ -21,6 +21,8 @@ void addInteger(pugi::xml_node parent, const char* name, int64_t value);
 void addBoolean(pugi::xml_node parent, const char* name, bool value);
 void addString(pugi::xml_node parent, const char* name, const std::string& value);
 void addRgb(pugi::xml_node parent, const char* name, const Rgb& value);
+// A colour that may be above 1 where Mitsuba takes no such <rgb>: a <spectrum>.
+void addUnbounded(pugi::xml_node parent, const char* name, const Rgb& value);
 void addPoint(pugi::xml_node parent, const char* name, const Double3& value);
 void addVector(pugi::xml_node parent, const char* name, const Double3& value);
 // Nothing for the identity, which is every transform's default.

@@ -46,7 +46,10 @@ struct BitmapTexture {
   std::shared_ptr<const Bitmap> bitmap;
   Filter filter = Filter::bilinear;
   Wrap wrap = Wrap::repeat;
-  bool ofMesh = false;  // an attribute of the one mesh that has it, baked (engine/load/mesh_attributes.h)
+  // The baked attribute of the one mesh that has it (engine/load/mesh_attributes.h), of which the bitmap is made, and
+  // the factor of its values; null: of no mesh.
+  std::shared_ptr<const Bitmap> attribute{};
+  double attributeScale = 1;
 };
 
 struct CheckerboardTexture {

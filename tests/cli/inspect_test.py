@@ -63,6 +63,18 @@ class Inspect(CommandTest):
         text = self.run_wavecrest("inspect", "lafortune-room", "--size", "32x24").stdout
         self.assertRegex(text, rf"intersector bvh, {large['hierarchy_nodes']} nodes; \d+ bytes a primitive")
 
+    def test_primitives_have_the_size_of_the_precision(self):
+        self.assertEqual(self.inspect("cornell-mirror", "--precision", "double")["primitives"]["bytes_each"], 128)
+
+    def test_the_size_of_a_cropped_film_is_that_of_its_window(self):
+        crop = '<integer name="crop_width" value="5"/><integer name="crop_height" value="3"/></film>'
+        scene = self.write(
+            "scene.xml",
+            '<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><integer name="width" value="32"/>'
+            f'<integer name="height" value="24"/>{crop}</sensor><shape type="sphere"/></scene>',
+        )
+        self.assertRegex(self.run_wavecrest("inspect", scene).stdout, r"(?m)^sensor +perspective, 5 x 3, ")
+
     def test_notes_say_what_is_left_out(self):
         scene = self.write(
             "scene.xml",

@@ -39,7 +39,7 @@ TEST(Materials, bakedColoursCountWithinTheirTriangles) {
       Bitmap{.width = 2, .height = 2, .channels = 1, .pixels = {0.0f, 1.0f, 1.0f, 2.0f}});
   for (const bool ofMesh : {false, true}) {
     Scene scene;
-    scene.textures.push_back({.kind = BitmapTexture{.bitmap = bitmap, .ofMesh = ofMesh}});
+    scene.textures.push_back({.kind = BitmapTexture{.bitmap = bitmap, .attribute = ofMesh ? bitmap : nullptr}});
     Material material;
     material.kind = Plastic{.diffuseReflectance = {.texture = 0}, .nonlinear = true};
     const auto compile = [&] { compileMaterial(material, scene); };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <utility>
 
 #include "tests/effort.h"
 #include "tests/engine/render_statistics.h"
@@ -153,6 +154,19 @@ TEST(PathClasses, areThoseThatLinksAllow) {
   const PathClassTable table = classifyPaths(links);
   ASSERT_EQ(table.classes.size(), 1u);
   EXPECT_EQ(table.classes[0].signature, "P S+ D E");
+}
+
+TEST(PathClasses, haveNoMoreEdgesThanPaths) {
+  const std::pair<uint32_t, size_t> cases[] = {{1, 1}, {2, 4}, {3, 10}, {4, 16}, {5, 18}};
+  for (const auto& [edges, classes] : cases) {
+    EXPECT_EQ(classifyPaths(allLinks(), edges).classes.size(), classes) << edges;
+  }
+  Scene scene = sceneFile("cornell-mirror", 64, 48);
+  scene.defaults.maxDepth = 2;
+  const PathClassTable table = classifyPaths(scene);
+  EXPECT_NE(find(table, "A D E"), nullptr);
+  EXPECT_EQ(find(table, "A S+ D E"), nullptr);
+  EXPECT_EQ(table.reference.method, Method::pt);
 }
 
 // ---- reference methods ----------------------------------------------------------------------------------------------

@@ -23,6 +23,15 @@ TEST(RawConstant, IsInTheRangeOfWhatItStandsFor) {
   expectErrorOnLine2(texturedSphere(named("reflectance")), "a value of -1");
   expectErrorOnLine2(R"(<shape type="sphere"><emitter type="area">)" + named("radiance") + "</emitter></shape>",
                      "emission texture has a value of -1");
+  const auto rough = [](const std::string& value) {
+    return R"(<shape type="sphere"><bsdf type="principled"><texture name="roughness" type="rawconstant">)"
+           R"(<vector name="value" value=")" +
+           value + R"("/></texture></bsdf></shape>)";
+  };
+  expectErrorOnLine2(rough("-0.5"), "\"roughness\" has a value of -0.5");
+  expectErrorOnLine2(rough("1e300"), "\"value\" of texture \"rawconstant\" is out of range");
+  const Scene scene = loadBody(rough("0.5"));
+  EXPECT_EQ(std::get<Principled>(scene.materials.at(0).kind).roughness.value, 0.5);
 }
 
 TEST(Checkerboard, Defaults) {

@@ -99,6 +99,28 @@ TEST(SimplifyScene, blendOfOneIsThatOne) {
   EXPECT_TRUE(std::holds_alternative<Blend>(scene.materials[8].kind)) << "opacities around both";
 }
 
+// What takes all light is no part, and the others keep their weights.
+TEST(SimplifyScene, blendsHaveNoBlackParts) {
+  Scene scene;
+  const Material black = materialOf(Diffuse{{{0, 0, 0}}});
+  Material thin = black;
+  thin.opacity = TexturedFloat{0.5};
+  scene.materials = {materialOf(Conductor{}), black, thin};
+  scene.materials.push_back(materialOf(Blend{.materials = {1, 0}, .weights = {0.5, 0.25}}));
+  scene.materials.push_back(materialOf(Blend{.materials = {1, 1}, .weights = {0.5, 0.25}}));
+  scene.materials.push_back(materialOf(Blend{.materials = {0, 2}, .weights = {0.5, 0.5}}));
+  scene.materials.push_back(materialOf(Blend{.materials = {0, 1}, .weights = {0, 1}}));
+  scene.materials.push_back(materialOf(Blend{.materials = {2, 1}, .weights = {0.5, 0.5}}));
+  simplifyScene(scene);
+  const auto blend = [&](size_t i) { return std::get<Blend>(scene.materials[i].kind); };
+  EXPECT_EQ(blend(3).materials, std::vector<uint32_t>{0});
+  EXPECT_EQ(blend(3).weights, std::vector<double>{0.25});
+  EXPECT_EQ(blend(4).materials, std::vector<uint32_t>{1}) << "one part stays";
+  EXPECT_EQ(blend(5).materials.size(), 2u) << "light goes through the black part";
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(scene.materials[6].kind)) << "the part that has the weight";
+  EXPECT_EQ(blend(7).materials.size(), 2u) << "black beside a mask keeps what passes untinted";
+}
+
 TEST(SimplifyScene, replacesTexturesOfOneColour) {
   Scene scene;
   const uint32_t plain = addBitmap(scene, 3, {0.2f, 0.3f, 0.4f, 0.2f, 0.3f, 0.4f}),

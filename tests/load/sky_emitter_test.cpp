@@ -103,6 +103,8 @@ TEST(Sunsky, MistakesAreErrors) {
   expectSkyError(R"(<vector name="sun_direction" value="1"/><float name="hour" value="3"/>)", "beside sun_direction");
   expectSkyError(R"(<float name="sun_aperture" value="180"/>)", "below 180");
   expectSkyError(R"(<rgb name="albedo" value="2"/>)", "out of range");
+  expectSkyError(R"(<spectrum name="albedo" type="uniform"><float name="value" value="5"/></spectrum>)",
+                 "albedo of the ground is above 1");
   expectSkyError(R"(<integer name="month" value="13"/>)", "13");
   expectSkyError(R"(<transform name="to_world"><matrix value="1 1 0 0 0 1 0 0 0 0 1 0 0 0 0 1"/></transform>)",
                  "of the environment shears");

@@ -7,6 +7,8 @@
 #include <random>
 #include <string>
 
+#include "engine/load/values.h"
+
 namespace wavecrest {
 namespace {
 
@@ -57,6 +59,14 @@ TEST(TextScanner, IntegersAndLines) {
   } catch (const LoadError& error) {
     EXPECT_STREQ(error.what(), "file:3: bad integer \"x\"; expected an integer");
   }
+}
+
+TEST(Quotes, endBetweenCharactersOfUtf8) {
+  const std::string most(58, 'a');
+  EXPECT_EQ(inQuotes(most + "ü"), "\"" + most + "ü\"");
+  EXPECT_EQ(inQuotes(most + "aü"), "\"" + most + "a…\"");
+  EXPECT_EQ(inQuotes(most + "üb"), "\"" + most + "ü…\"");
+  EXPECT_EQ(inQuotes(std::string(61, '\x80')), "\"…\"") << "no UTF-8";
 }
 
 }  // namespace

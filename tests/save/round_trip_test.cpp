@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "engine/scene/scene_error.h"
 #include "metrics/image/image_io.h"
 #include "tests/load/mesh_text.h"
 #include "tests/save/saved_scene.h"
@@ -59,6 +60,15 @@ TEST(RoundTrip, SunAndSky) {
   }
 }
 
+// Their zenith is turned from y to z, which makes no zeros of another sign.
+TEST(RoundTrip, SunAndSkyOfVersion06) {
+  for (const char* type : {"sun", "sky", "sunsky"}) {
+    const Scene scene = load(
+        sceneXml(fmt::format(R"(<emitter type="{}"/>)", type) + std::string(kSensor) + std::string(kSphere), "0.6.0"));
+    EXPECT_EQ(savedAndLoaded(scene).hash, scene.hash) << type;
+  }
+}
+
 TEST(RoundTrip, HiddenEmitters) {
   expectSame(R"(<integrator type="path"><boolean name="hide_emitters" value="true"/></integrator>)");
 }
@@ -106,6 +116,23 @@ TEST(RoundTrip, MeshesWithNormalsOfEveryOrigin) {
   }
 }
 
+// The fourth texel of the triangle's cell is below 0, which a bitmap of a reflectance may not be.
+TEST(RoundTrip, AMeshAttributeWithTwoScales) {
+  const Folder folder;
+  folder.write("mesh.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+               "property float r\nproperty float g\nproperty float b\nelement face 1\n"
+               "property list uchar int vertex_indices\nend_header\n"
+               "0 0 0 1 0.9 0.3\n1 0 0 0 0.1 0.2\n0 1 0 0 0.3 0.1\n3 0 1 2\n");
+  const auto attribute = [](const std::string& name, const std::string& scale) {
+    return R"(<texture type="mesh_attribute" name=")" + name + R"("><string name="name" value="vertex_color"/>)" +
+           R"(<float name="scale" value=")" + scale + "\"/></texture>";
+  };
+  expectSame(folder, R"(<shape type="ply"><string name="filename" value="mesh.ply"/><bsdf type="diffuse">)" +
+                         attribute("reflectance", "0.7") + R"(</bsdf><emitter type="area">)" +
+                         attribute("radiance", "12.3") + "</emitter></shape>");
+}
+
 TEST(RoundTrip, AMeshHasNormalsInItsFileOnlyIfTheyAreItsOwn) {
   const Folder folder;
   folder.write("quad.ply", kQuadPly);
@@ -144,8 +171,33 @@ TEST(RoundTrip, MapsAndMasksOfDifferentTexturesKeepTheirOrder) {
   const std::string boards = std::string(kBoard) + R"(<texture type="checkerboard" id="other"/>)";
   const std::string mask = R"(<bsdf type="mask"><ref name="opacity" id="board"/>)";
   const std::string bump = R"(<bsdf type="bumpmap"><ref id="other"/>)", diffuse = R"(<bsdf type="diffuse"/>)";
-  expectSame(boards + R"(<shape type="sphere">)" + mask + bump + diffuse + "</bsdf></bsdf></shape>");
-  expectSame(boards + R"(<shape type="sphere">)" + bump + mask + diffuse + "</bsdf></bsdf></shape>");
+  const std::string normal = R"(<bsdf type="normalmap"><ref name="normalmap" id="other"/>)";
+  for (const std::string& map : {bump, normal}) {
+    expectSame(boards + R"(<shape type="sphere">)" + mask + map + diffuse + "</bsdf></bsdf></shape>");
+    expectSame(boards + R"(<shape type="sphere">)" + map + mask + diffuse + "</bsdf></bsdf></shape>");
+  }
+}
+
+// A coat over a textured base is plastic, whose textures are read in the same order.
+TEST(RoundTrip, CoatsOfDifferentTexturesKeepTheirOrder) {
+  expectSame(std::string(kBoard) + R"(<texture type="checkerboard" id="other"/><shape type="sphere">
+    <bsdf type="coating"><ref name="specular_reflectance" id="board"/>
+    <bsdf type="diffuse"><ref name="reflectance" id="other"/></bsdf></bsdf></shape>)");
+}
+
+// The rest is a black part of the file, which is none once it is read.
+TEST(RoundTrip, AMixtureOfLessThanOneHasAsManyPartsAsBefore) {
+  const Folder folder;
+  std::string parts;
+  for (int i = 0; i < 8; ++i) parts += R"(<bsdf type="diffuse"/>)";
+  const Scene scene = loadBody(folder, R"(<shape type="sphere"><bsdf type="mixturebsdf">
+    <string name="weights" value="0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1"/>)" +
+                                           parts + "</bsdf></shape>");
+  saveScene(planSave(scene, folder.path() / "saved.xml"));
+  const Scene again = loadScene(folder.path() / "saved.xml");
+  const auto& blend = std::get<Blend>(again.materials.at(again.shapes.at(0).material).kind);
+  ASSERT_EQ(blend.materials.size(), 8u);
+  for (const double weight : blend.weights) EXPECT_NEAR(weight, 0.1, 1e-12);
 }
 
 TEST(RoundTrip, NumbersOfACheckerboardMayBeAbove1) {
@@ -251,6 +303,8 @@ TEST(RoundTrip, ABitmapIsAPngIfEightBitsSayAllOfIt) {
 TEST(RoundTrip, ValuesThatColoursMayNotHave) {
   expectSame(R"(<shape type="sphere"><bsdf type="diffuse"><texture type="rawconstant" name="reflectance">
     <vector name="value" value="1.5, 0.25, 0"/></texture></bsdf></shape>)");
+  expectSame(R"(<shape type="sphere"><bsdf type="diffuse"><spectrum type="uniform" name="reflectance">
+    <float name="value" value="1.1"/></spectrum></bsdf></shape>)");
   expectSame(R"(<shape type="sphere"><bsdf type="conductor"><string name="material" value="Au"/></bsdf></shape>
     <shape type="sphere"><bsdf type="conductor"><rgb name="eta" value="0"/><rgb name="k" value="3.1"/></bsdf></shape>)");
 }
@@ -292,6 +346,15 @@ TEST(RoundTrip, GroupsAndInstancesInTheirOrder) {
   EXPECT_EQ(again.groups[0].id, "b");
   ASSERT_EQ(again.instances.size(), 4u);
   EXPECT_EQ(again.instances[2].group, 1u);
+}
+
+// A number of the film's filter is on the fifth level.
+TEST(RoundTrip, WhatTheLoaderWouldRefuseIsNotPlanned) {
+  const Scene scene = loadBody("");
+  EXPECT_NO_THROW(planSave(scene, "saved.xml", {.nesting = 5}));
+  EXPECT_THROW(planSave(scene, "saved.xml", {.nesting = 4}), SceneError);
+  EXPECT_THROW(planSave(scene, "saved.xml", {.elements = 9}), SceneError);
+  EXPECT_THROW(planSave(scene, "saved.xml", {.bytes = 99}), SceneError);
 }
 
 TEST(RoundTrip, IdsAreKeptAndMadeUnique) {
