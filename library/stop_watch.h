@@ -8,7 +8,7 @@ namespace wavecrest::api {
 
 struct StopWatch {
   // The session that is to stop, or null while none renders. Once it returns no request holds the former session.
-  WAVECREST_EXPORT static void watch(StopRequest& stop, Session* session) noexcept;
+  static void watch(StopRequest& stop, Session* session) noexcept;
 };
 
 }  // namespace wavecrest::api

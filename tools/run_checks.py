@@ -25,8 +25,15 @@ JOBS = os.cpu_count() or 1
 TEST_TIMEOUT_SECONDS = 600
 SHOWN_LINES = 12  # of what a failed test said, in the summary
 SHOWN_CASES = 20  # of each step's tests, the slowest
-# A build folder keeps the options of its last step: every step says those that some step changes.
-RELEASE_OPTIONS = ("-DWAVECREST_SHARED=ON", "-DWAVECREST_PYTHON=OFF", "-DWAVECREST_MPI=AUTO")
+# A build folder keeps the options of its last configuration: every step says those that some step changes, and resets
+# the choice of kernels, which somebody may have made by hand.
+RELEASE_OPTIONS = (
+    "-UWAVECREST_ISAS",
+    "-UWAVECREST_ONLY_COMPLETE_KERNELS",
+    "-DWAVECREST_SHARED=ON",
+    "-DWAVECREST_PYTHON=OFF",
+    "-DWAVECREST_MPI=AUTO",
+)
 
 
 class Tally:
@@ -206,7 +213,7 @@ def step_fuzz(tally):
 def step_tsan(tally):
     """Data races of whatever runs on several threads (tools/tsan.supp says what is left out, and why)."""
     if build(tally, "tsan", "-DWAVECREST_BENCH=OFF", targets=THREADED_TESTS):
-        options = f"suppressions={ROOT}/tools/tsan.supp second_deadlock_stack=1 history_size=4"
+        options = f"suppressions='{ROOT}/tools/tsan.supp' second_deadlock_stack=1 history_size=4"
         selection = ("--tests-regex", THREADED_CASES, "--exclude-regex", "_NOT_BUILT$")
         test(tally, "tsan", *selection, batches=False, TSAN_OPTIONS=options)
 
@@ -240,7 +247,9 @@ def step_browser(tally):
 def step_wheel(tally):
     """The wheel, carrying its libraries, in a Debian 12 that has none of them. Needs root for chroot."""
     targets = ("wavecrest_python_stub", "wavecrest_scene_assets")
-    if build(tally, "release", *python_options(tally), targets=targets):
+    if run(tally, "wheel: packages", ["tools/install-packages", "release"]) and build(
+        tally, "release", *python_options(tally), targets=targets
+    ):
         run(tally, "wheel", ["tests/python/wheel-test"])
 
 

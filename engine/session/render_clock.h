@@ -2,7 +2,9 @@
 #pragma once
 
 #include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 
@@ -58,10 +60,13 @@ class RenderClock {
   std::atomic<double> shown_{0};
 };
 
-// TBB gives an arena of more threads than the machine has cores no workers for the surplus unless it is told to. Only
-// while a session works: the least of all limits alive counts, and several sessions may be.
+// Lets the arena of a session have more threads than the machine has cores while the session works: TBB has no workers
+// for them otherwise. The least of all limits alive counts for the whole process, so none is below the number of cores;
+// it is the arena that holds a session to fewer threads.
 struct WorkerLimit {
-  explicit WorkerLimit(size_t threads) : control(oneapi::tbb::global_control::max_allowed_parallelism, threads) {}
+  explicit WorkerLimit(size_t threads)
+      : control(oneapi::tbb::global_control::max_allowed_parallelism,
+                std::max(threads, static_cast<size_t>(oneapi::tbb::info::default_concurrency()))) {}
   oneapi::tbb::global_control control;
 };
 

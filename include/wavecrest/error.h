@@ -10,8 +10,8 @@ namespace wavecrest::api {
 
 enum class ErrorKind {
   usage,  // options that make no sense
-  input,  // a scene, image or results file that cannot be used
-  fault   // an error of the library, or of the machine: no memory, no space on the disk
+  input,  // a scene, image or results file that cannot be used or written, as on a full disk
+  fault   // an error of the library, or of the machine: no memory
 };
 
 // what() is one line: "FILE:LINE: what is wrong; what was expected".

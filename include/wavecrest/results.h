@@ -56,7 +56,7 @@ struct SnapshotRecord {
 // A run is written whole or not at all, so a state is always final.
 enum class RunState {
   done,
-  refused,  // the method cannot render the scene; `reason` says why
+  refused,  // no image: the method cannot render the scene, or the time was too short; `reason` says which
 };
 constexpr std::string_view toString(RunState state) { return state == RunState::done ? "done" : "refused"; }
 
@@ -65,7 +65,9 @@ struct RunRecord {
   uint64_t seed = 0;
   RunState state = RunState::done;
   std::string reason = {};  // of a refusal
-  std::string stats = {};   // JSON object with the keys of `render --stats`, without its arrays
+  // JSON object: `render --stats` without stages, snapshots and peak_memory_bytes; bench/results/README.md has what is
+  // added. Empty where the method cannot render the scene.
+  std::string stats = {};
   std::vector<StageRecord> stages = {};
   std::vector<SnapshotRecord> snapshots = {};
 };

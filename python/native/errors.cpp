@@ -2,6 +2,13 @@
 #include "native.h"
 
 namespace wavecrest::python {
+
+nb::str toText(const std::string& text) {
+  PyObject* const decoded = PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace");
+  if (decoded == nullptr) throw nb::python_error();
+  return nb::steal<nb::str>(decoded);
+}
+
 namespace {
 
 const char* className(api::ErrorKind kind) {
@@ -18,9 +25,9 @@ const char* className(api::ErrorKind kind) {
 
 void raise(const api::Error& error) {
   const nb::object type = nb::module_::import_("wavecrest.errors").attr(className(error.kind()));
-  const nb::object file = error.file().empty() ? nb::none() : nb::object(nb::str(error.file().c_str()));
+  const nb::object file = error.file().empty() ? nb::none() : nb::object(toText(error.file()));
   const nb::object line = error.line() == 0 ? nb::none() : nb::object(nb::int_(error.line()));
-  PyErr_SetObject(type.ptr(), type(error.what(), file, line).ptr());
+  PyErr_SetObject(type.ptr(), type(toText(error.what()), file, line).ptr());
 }
 
 }  // namespace

@@ -23,6 +23,11 @@ nb::object byteArray(std::vector<uint8_t> numbers, std::initializer_list<size_t>
 // One copy, of which the comparison becomes the owner.
 api::Image toImage(const FloatImage& pixels, bool srgb);
 
+// ---- errors.cpp -----------------------------------------------------------------------------------------------------
+
+// Bytes that are no UTF-8, as scene files may have them, become U+FFFD.
+nb::str toText(const std::string& text);
+
 // ---- parts of the module --------------------------------------------------------------------------------------------
 
 void addErrors(nb::module_& module);

@@ -45,6 +45,12 @@ Scene load(const std::string& nameOrPath, const std::map<std::string, std::strin
                      {.defines = defines, .lenient = lenient, .width = width, .height = height, .spp = spp});
 }
 
+std::vector<nb::str> warnings(const Scene& scene) {
+  std::vector<nb::str> lines;
+  for (const std::string& line : scene.warnings()) lines.push_back(toText(line));
+  return lines;
+}
+
 std::vector<std::pair<std::string, std::string>> builtInScenes() {
   std::vector<std::pair<std::string, std::string>> all;
   for (const api::BuiltInScene& scene : api::builtInScenes()) all.emplace_back(scene.name, scene.description);
@@ -96,7 +102,7 @@ void addRender(nb::module_& module) {
       .def_prop_ro("height", &Scene::height)
       .def_prop_ro("spp", &Scene::spp)
       .def_prop_ro("hash", &Scene::hash)
-      .def_prop_ro("warnings", &Scene::warnings)
+      .def_prop_ro("warnings", &warnings)
       .def("inspect", &Scene::inspect, nb::arg("options"), nb::call_guard<nb::gil_scoped_release>());
   module.def("load", &load, nb::arg("name_or_path"), nb::arg("defines"), nb::arg("lenient"), nb::arg("width"),
              nb::arg("height"), nb::arg("spp"), nb::call_guard<nb::gil_scoped_release>());

@@ -24,25 +24,26 @@ if TYPE_CHECKING:
 ImageLike = Union[str, "os.PathLike[str]", Any]
 
 
-def as_pixels(image: ImageLike) -> tuple[FloatArray, bool, str]:
-    """Height x width x 3 float32, whether they are sRGB codes scaled to 0..1 instead of linear light, and a name."""
+def as_pixels(image: ImageLike, name: str) -> tuple[FloatArray, bool, str]:
+    """Height x width x 3 float32, whether they are sRGB codes scaled to 0..1 instead of linear light, and a name for
+    messages: that of the file, or the given one of an array."""
     import numpy
 
     if isinstance(image, (str, os.PathLike)):
-        name = os.fspath(image)
-        pixels, srgb = _native.read_image(name)
-        return pixels, srgb, name
+        file = os.fspath(image)
+        pixels, srgb = _native.read_image(file)
+        return pixels, srgb, file
     array = numpy.asarray(image)
     if array.ndim == 2:
         array = array[:, :, numpy.newaxis]
     if array.ndim != 3 or array.shape[2] not in (1, 3, 4) or array.size == 0:
-        raise ValueError(f"image of shape {array.shape}; expected height x width, with 1, 3 or 4 channels")
+        raise ValueError(f"{name}: image of shape {array.shape}; expected height x width, with 1, 3 or 4 channels")
     array = array[:, :, :3] if array.shape[2] != 1 else numpy.repeat(array, 3, axis=2)
     srgb = array.dtype == numpy.uint8
     if not srgb and array.dtype.kind != "f":
-        raise ValueError(f"image of {array.dtype}; expected floats (linear light) or uint8 (sRGB codes)")
+        raise ValueError(f"{name}: image of {array.dtype}; expected floats (linear light) or uint8 (sRGB codes)")
     pixels = numpy.ascontiguousarray(array, dtype=numpy.float32)
-    return (pixels / numpy.float32(255) if srgb else pixels), srgb, "image"
+    return (pixels / numpy.float32(255) if srgb else pixels), srgb, name
 
 
 def read_image(file: str | os.PathLike[str]) -> FloatArray:

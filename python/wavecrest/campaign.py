@@ -12,7 +12,7 @@ from typing import Any
 
 from wavecrest import _native
 from wavecrest.errors import Interrupted
-from wavecrest.render import duration, scene_value
+from wavecrest.render import count, duration, scene_value
 from wavecrest.tables import Table
 
 
@@ -129,7 +129,7 @@ def converge(
         os.fspath(reference) if reference is not None else "",
         shard,
         isa,
-        threads or 0,
+        count("threads", threads),
         checkpoints,
         resume,
         check,

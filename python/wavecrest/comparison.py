@@ -68,11 +68,11 @@ class Reference:
     """A reference image, with all that metrics derive from it alone: worth keeping for many comparisons."""
 
     def __init__(self, image: ImageLike, *, exposure: float = 0.0, gamma: bool = False) -> None:
-        pixels, srgb, name = as_pixels(image)
+        pixels, srgb, name = as_pixels(image, "reference")
         self._native = _native.Reference(pixels, srgb, exposure, gamma, name)
 
     def compare(self, test: ImageLike, metrics: Sequence[str] | str = (), *, maps: bool = False) -> Comparison:
-        pixels, srgb, name = as_pixels(test)
+        pixels, srgb, name = as_pixels(test, "test")
         names = [metrics] if isinstance(metrics, str) else list(metrics)
         return Comparison(*self._native.compare(pixels, srgb, names, maps, name))
 

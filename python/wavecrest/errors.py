@@ -22,7 +22,7 @@ class UsageError(Error, ValueError):
 
 
 class InputError(Error, ValueError):
-    """A scene, image or results file that cannot be used."""
+    """A scene, image or results file that cannot be used or written."""
 
 
 class FaultError(Error, RuntimeError):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import operator
 import os
 import pathlib
 import warnings
@@ -30,10 +31,29 @@ def scene_value(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
+def count(name: str, value: Any) -> int:
+    """A whole number from 1 to 2^32 - 1. None is the 0 by which C++ knows that it is not given."""
+    if value is None:
+        return 0
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = 0
+    if not 0 < number < 2**32:
+        raise UsageError(f"{name} {value!r}: expected a whole number from 1 to {2**32 - 1}")
+    return number
+
+
+# Options of which 0 means "not given" in C++. In Python that is None.
+_NOT_GIVEN_IF_0 = ("spp", "threads", "max_depth", "rr_depth", "light_paths", "restart")
+
+
 def _option_value(name: str, value: Any) -> Any:
     """The value as C++ has it: times are words, and a radius of 0 is chosen for the image."""
     if name == "time":
         return duration(value)
+    if name in _NOT_GIVEN_IF_0 and value == 0:
+        raise UsageError(f"{name} {value!r}: expected a number from 1 on{', or -1' if name == 'max_depth' else ''}")
     return 0 if name == "radius" and value == "auto" else value
 
 
@@ -79,7 +99,8 @@ class Result:
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Any:
         import numpy
 
-        return numpy.array(self.image, dtype=dtype, copy=True) if copy else numpy.asarray(self.image, dtype=dtype)
+        # NumPy 1 has no copy=None.
+        return numpy.asarray(self.image, dtype) if copy is None else numpy.array(self.image, dtype, copy=copy)
 
     def __repr__(self) -> str:
         stats = self.stats
@@ -107,12 +128,34 @@ class Scene:
     def __init__(self, native: _native.Scene) -> None:
         self._native = native
 
-    name = property(lambda self: self._native.name, doc="The scene's name.")
-    width = property(lambda self: self._native.width, doc="Pixels of the rendered film in a row.")
-    height = property(lambda self: self._native.height, doc="Rows of the rendered film.")
-    spp = property(lambda self: self._native.spp, doc="Iterations of a render that says neither time nor spp.")
-    hash = property(lambda self: self._native.hash, doc="Of all that the scene was loaded from.")
-    warnings = property(lambda self: self._native.warnings, doc="What `lenient` skipped, a line each.")
+    @property
+    def name(self) -> str:
+        return self._native.name
+
+    @property
+    def width(self) -> int:
+        """Pixels of the rendered film in a row."""
+        return self._native.width
+
+    @property
+    def height(self) -> int:
+        """Rows of the rendered film."""
+        return self._native.height
+
+    @property
+    def spp(self) -> int:
+        """Iterations of a render that says neither time nor spp."""
+        return self._native.spp
+
+    @property
+    def hash(self) -> str:
+        """Of all that the scene was loaded from."""
+        return self._native.hash
+
+    @property
+    def warnings(self) -> list[str]:
+        """What `lenient` skipped, a line each."""
+        return self._native.warnings
 
     def __repr__(self) -> str:
         return f"<scene {self.name}, {self.width} x {self.height}>"
@@ -223,7 +266,8 @@ def load(
     skip what is not supported, see Scene.warnings. Further keywords are values of the scene's $names.
     """
     texts = {name: scene_value(value) for name, value in defines.items()}
-    return Scene(_native.load(os.fspath(scene), texts, lenient, width or 0, height or 0, spp or 0))
+    sizes = count("width", width), count("height", height), count("spp", spp)
+    return Scene(_native.load(os.fspath(scene), texts, lenient, *sizes))
 
 
 def scenes() -> Table:

@@ -3,6 +3,7 @@ example project its library, shells their completions."""
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -91,6 +92,10 @@ class Installed(unittest.TestCase):
         self.assertTrue(any(name.startswith("wavecrest::api::Scene::load") for name in names))
         inner = [name for name in names if "wavecrest::" in name and "wavecrest::api" not in name]
         self.assertEqual(inner, [])
+        headers = "".join(header.read_text() for header in self.prefix.glob("include/wavecrest/*.h"))
+        declared = re.findall(r"(?:class|struct) WAVECREST_EXPORT (\w+)|WAVECREST_EXPORT [^(;]*?(\w+)\(", headers)
+        exported = {match[1] for name in names if (match := re.match(r"wavecrest::api::(\w+)", name))}
+        self.assertEqual(exported - {class_ or function for class_, function in declared}, set())
 
     def test_bash_completes_commands_options_and_values(self):
         script = self.one("share/bash-completion/completions/wavecrest")
@@ -115,11 +120,14 @@ class Installed(unittest.TestCase):
 
     def test_the_man_page_lists_every_option_of_every_command(self):
         page = self.one("share/man/man1/wavecrest.1").read_text().replace("\\-", "-")
-        for command in ("render", "compare", "converge", "report", "reference", "inspect", "bench", "scenes"):
-            self.assertIn(f".SS {command}\n", page)
-            for word in run(self.program, command, "--help").split():
-                if word.startswith("--"):
-                    self.assertIn(word.split(",")[0].split("=")[0].rstrip(".;:)'"), page, command)
+        parts = dict(re.findall(r"^\.SS (\S+)\n(.*?)(?=^\.S)", page, re.MULTILINE | re.DOTALL))
+        self.assertLessEqual({"render", "compare", "converge", "report", "merge", "bench"}, set(parts))
+        for command, part in parts.items():
+            # A line of the help begins with two spaces and the option's names.
+            names = ",".join(re.findall(r"^  (-\S+)", run(self.program, command, "--help"), re.MULTILINE)).split(",")
+            listed = ", ".join(re.findall(r"^\\fB(-.*?)\\fR", part, re.MULTILINE)).split(", ")
+            self.assertIn("--help", names)
+            self.assertEqual(set(names) - set(listed), set(), command)
         if shutil.which("mandoc"):
             run("mandoc", "-T", "lint", "-W", "error", self.one("share/man/man1/wavecrest.1"))
 

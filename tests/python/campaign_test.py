@@ -148,6 +148,12 @@ except KeyboardInterrupt:
         with self.assertRaises(wc.InputError):
             wc.read_results(self.out / "nothing-here")
 
+    def test_threads_are_a_whole_number_from_1_on(self):
+        for threads in (0, -1, 2.5):
+            with self.assertRaisesRegex(wc.UsageError, f"^threads {threads}: expected a whole number from 1 to 4294967295$"):
+                wc.converge(["cornell-diffuse"], threads=threads, out=self.out.with_name("none"))
+        self.assertFalse(self.out.with_name("none").exists())
+
     def test_results_that_cannot_be_reached_are_no_fault(self):
         loop = self.out.with_name("loop")
         loop.symlink_to(loop)

@@ -66,6 +66,16 @@ class Rendering(unittest.TestCase):
         image[:] = 0
         self.assertEqual(image.sum(), 0)
 
+    def test_a_result_becomes_an_array_as_numpy_is_asked_to(self):
+        result = small().render(spp=1)
+        self.assertTrue(numpy.shares_memory(numpy.asarray(result), result.image))
+        self.assertFalse(numpy.shares_memory(numpy.array(result), result.image))
+        self.assertEqual(numpy.asarray(result, dtype=float).dtype, float)
+        if numpy.lib.NumpyVersion(numpy.__version__) >= "2.0.0":
+            self.assertTrue(numpy.shares_memory(numpy.array(result, copy=False), result.image))
+            with self.assertRaises(ValueError):
+                numpy.array(result, dtype=float, copy=False)
+
     def test_other_threads_run_meanwhile(self):
         counted = 0
         done = threading.Event()
@@ -159,10 +169,41 @@ result.save(again)
             with self.assertRaisesRegex(wc.UsageError, f"snapshots: {name} is for render"):
                 small().snapshots(iterations=[4, 8], **{name: value})
 
+    def test_errors_quote_text_of_any_bytes(self):
+        file = self.folder / "bytes.xml"
+        # Quotes hold 60 bytes at most, and whole characters.
+        for value, quoted in ((b"a" * 59 + "ü".encode(), "a" * 59 + "…"), (b"\xfc", "\N{REPLACEMENT CHARACTER}")):
+            file.write_bytes(b'<scene version="3.0.0">\n<sensor type="perspective">\n<float name="fov" value="' + value
+                             + b'"/></sensor></scene>\n')  # fmt: skip
+            with self.assertRaisesRegex(wc.InputError, f'bad number "{quoted}"') as raised:
+                wc.load(file)
+            self.assertEqual((raised.exception.file, raised.exception.line), (str(file), 3))
+
+    def test_warnings_quote_text_of_any_bytes(self):
+        file = self.folder / "bytes.xml"
+        file.write_bytes(b'<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere">'
+                         b'<string name="\xfc" value=""/></shape></scene>')  # fmt: skip
+        (warning,) = wc.load(file, lenient=True).warnings
+        self.assertIn('unknown parameter "\N{REPLACEMENT CHARACTER}"', warning)
+
     def test_values_that_an_option_cannot_have_are_refused_by_its_name(self):
         for name, value in (("spp", -1), ("threads", 2.5), ("sampler", 3), ("method", 4)):
             with self.assertRaisesRegex(wc.UsageError, f"^{name} {value}: expected"):
                 small().render(**{name: value})
+
+    def test_a_number_that_is_given_is_not_0(self):
+        for name in ("spp", "threads", "max_depth", "rr_depth", "light_paths", "restart"):
+            with self.assertRaisesRegex(wc.UsageError, f"^{name} 0: expected a number from 1 on"):
+                small().render(**{name: 0})
+        unlimited = small().render(spp=1, max_depth=-1, threads=2)
+        self.assertEqual(unlimited.iterations, 1)
+
+    def test_load_takes_whole_numbers_from_1_on(self):
+        for name in ("width", "height", "spp"):
+            for value in (0, -1, 2.5, "3", 2**40):
+                with self.assertRaisesRegex(wc.UsageError, f"^{name} {value!r}: expected a whole number from 1 to 4294967295$"):
+                    wc.load("cornell-mirror", **{name: value})
+        self.assertEqual(wc.load("cornell-mirror", width=numpy.int64(64)).width, 64)
 
     def test_snapshots_are_due_at_some_time_and_after_whole_iterations(self):
         for due in ({"times": [float("inf")]}, {"times": [float("nan")]}, {"iterations": [1.5, 1.9]}):
@@ -172,8 +213,8 @@ result.save(again)
     def test_numbers_out_of_range_are_refused_as_by_the_program(self):
         for method, name, value, text in (
             ("mlt", "chains", 0, "--chains 0: expected a number from 1 to 16777216"),
-            ("vcm", "radius", float("nan"), "--radius nan: expected a number from 1e-09 to 10, or 0"),
-            ("vcm", "radius", -0.05, "--radius -0.05: expected a number from 1e-09 to 10, or 0"),
+            ("vcm", "radius", float("nan"), "--radius nan: expected a number from 1e-06 to 10, or 0"),
+            ("vcm", "radius", -0.05, "--radius -0.05: expected a number from 1e-06 to 10, or 0"),
             ("vcm", "radius_alpha", -5, "--radius-alpha -5: expected a number from 0 to 1"),
             ("pt", "wave", 0, "--wave 0: expected a number from 16 to 1048576"),
             ("pt", "max_depth", -7, "--max-depth -7: expected a number from 1 to 4095, or -1"),

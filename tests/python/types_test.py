@@ -17,7 +17,7 @@ for snapshot in scene.snapshots("bpt", times=[1, 2]):
 score: wc.Score = wc.metrics.hdrvdp2(result, result)
 rows: wc.Table = wc.read_results("out").snapshots
 """
-BAD = GOOD + "\nwrong: str = score\nscene.rendr()\n"
+BAD = GOOD + "\nwrong: str = score\nscene.rendr()\nwide: str = scene.width\n"
 
 
 class Types(unittest.TestCase):
@@ -40,7 +40,7 @@ class Types(unittest.TestCase):
     def test_programs_are_checked_against_it(self):
         good = self.check(GOOD)
         self.assertEqual(good.returncode, 0, good.stdout)
-        self.assertIn("Found 2 errors", self.check(BAD).stdout)
+        self.assertIn("Found 3 errors", self.check(BAD).stdout)
 
 
 if __name__ == "__main__":

@@ -61,6 +61,11 @@ class Cases(unittest.TestCase):
         self.assertEqual([outcome for _, outcome in outcomes[3:]], ["failed", "failed"])
         self.assertEqual(self.cases[2].said, ["[ RUN      ] A.crashes", "ERROR: AddressSanitizer"])
 
+    def test_a_batch_that_ends_well_before_its_cases_is_a_failure(self):
+        passed = '<testcase name="a_test.batch0" status="run"/>'
+        self.assertEqual(self.outcomes(passed), [("a_test.batch0", "failed")])
+        self.assertEqual(self.outcomes(passed, "<testsuites/>"), [])  # a batch that has no cases
+
     def test_a_batch_that_was_not_built_is_a_failure(self):
         absent = '<testcase name="a_test.batch0" status="notrun"><skipped message="Unable to find executable"/></testcase>'
         self.assertEqual(self.outcomes(absent), [("a_test.batch0", "failed")])
