@@ -164,7 +164,7 @@ void writeMaps(const CompareOptions& options, const std::vector<MeasuredTest>& t
   for (const MeasuredTest& test : tests) {
     for (const Measured& score : test.scores) {
       const auto file = mapFile(options.mapFolder, test.label, tests.size() == 1, *score.metric);
-      const ShownMap map = showMap(score, test.codes.width, test.codes.height);
+      const ShownMap map = showMap(score, test.picture.width, test.picture.height);
       writePng(file.string(), map.picture);
       if (options.printsText()) fmt::print("map {}: 0 to {:.6g}\n", file.string(), map.range);
     }
@@ -190,7 +190,7 @@ bool checkThresholds(const CompareOptions& options, const MeasuredTest& test, bo
   }
   if (!asked || test.nonFinitePixels == 0) return held;
   tell("wavecrest: check failed: {}{} of {} pixels are not finite; a check asks for numbers", of, test.nonFinitePixels,
-       test.codes.pixelCount());
+       test.picture.pixelCount());
   return false;
 }
 
@@ -199,9 +199,9 @@ MeasuredTest measure(const PreparedReference& reference, const std::string& file
                      ImageFile image, const std::vector<const Metric*>& metrics, bool withMaps, bool withLight) {
   ComparedImage test = reference.prepareTest(file, std::move(image));
   MeasuredTest measured{
-      .file = file, .label = label, .codes = {}, .light = {}, .nonFinitePixels = test.nonFinitePixels, .scores = {}};
+      .file = file, .label = label, .picture = {}, .light = {}, .nonFinitePixels = test.nonFinitePixels, .scores = {}};
   for (const Metric* metric : metrics) measured.scores.push_back({metric, metric->measure(reference, test, withMaps)});
-  measured.codes = std::move(test.codes);
+  measured.picture = reference.pictureOf(test);
   if (withLight) measured.light = std::move(test.file);
   return measured;
 }
@@ -233,9 +233,7 @@ int compare(const CompareOptions& options) {
   if (options.printsText()) printText(tests);
   if (options.json) fmt::print("{}\n", jsonText(toJson(tests), 2));
   if (!options.mapFolder.empty()) writeMaps(options, tests);
-  if (!options.html.empty()) {
-    writeText(options.html, comparePage(options.reference, reference.image(), tests, options.exposure));
-  }
+  if (!options.html.empty()) writeText(options.html, comparePage(reference, tests));
   // Checks all tests, also after one that fails.
   bool held = true;
   for (const MeasuredTest& test : tests) held = checkThresholds(options, test, tests.size() == 1) && held;

@@ -31,10 +31,10 @@ bool hasLight(const ImageFile& file) {
 }
 
 // An image of light with its floats in an element of the page.
-std::string lightPane(const Image8& codes, const ImageFile& light, const std::string& name, const std::string& label,
+std::string lightPane(const Image8& picture, const ImageFile& light, const std::string& name, const std::string& label,
                       size_t number) {
   const std::string id = fmt::format("floats-{}", number);
-  return imagePane(codes, name, label, "#" + id) +
+  return imagePane(picture, name, label, "#" + id) +
          fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id,
                      floatText(light.image.pixels, light.image.width, light.image.height));
 }
@@ -48,7 +48,7 @@ std::string mapGroup(const std::vector<MeasuredTest>& tests, size_t index) {
   for (const MeasuredTest& test : tests) {
     const Measurement& measurement = test.scores[index].measurement;
     panes += imagePane(
-        falseColour(measurement.map, test.codes.width, test.codes.height, range), test.label,
+        falseColour(measurement.map, test.picture.width, test.picture.height, range), test.label,
         fmt::format("{}, {} {}", test.file, metric.symbol, formatSignificant(mainScore(metric, measurement))));
   }
   const std::string head = fmt::format("{}: {}", metric.symbol, metric.formula);
@@ -64,8 +64,10 @@ void addScoreRow(std::string& page, const std::vector<MeasuredTest>& tests, size
     const double score = scoreOf(test);
     if (metric.higherIsBetter ? score > best : score < best) best = score;
   }
-  append(page, "<tr><th title=\"{}\">{} <small>{}; {} is better</small></th>", escapeHtml(metric.title),
-         escapeHtml(metric.symbol), escapeHtml(metric.formula), metric.higherIsBetter ? "more" : "less");
+  const std::string conditions = metric.conditions.empty() ? "" : fmt::format("; {}", metric.conditions);
+  append(page, "<tr><th title=\"{}\">{} <small>{}; {} is better{}</small></th>", escapeHtml(metric.title),
+         escapeHtml(metric.symbol), escapeHtml(metric.formula), metric.higherIsBetter ? "more" : "less",
+         escapeHtml(conditions));
   for (const MeasuredTest& test : tests) {
     const double score = scoreOf(test);
     // Tests with equal best scores are all marked.
@@ -88,25 +90,26 @@ void addTable(std::string& page, const std::vector<MeasuredTest>& tests) {
 
 }  // namespace
 
-std::string comparePage(const std::string& referenceFile, const ComparedImage& reference,
-                        const std::vector<MeasuredTest>& tests, double exposure) {
-  std::string page = pageHead("Against " + referenceFile);
-  append(page, "<header><h1>Against {}</h1></header>\n<main>\n", escapeHtml(referenceFile));
+std::string comparePage(const PreparedReference& reference, const std::vector<MeasuredTest>& tests) {
+  // What is small in the table wraps, so that long viewing conditions leave room for the scores.
+  std::string page = pageHead("Against " + reference.name(), "tbody th small { white-space: normal; }\n");
+  append(page, "<header><h1>Against {}</h1></header>\n<main>\n", escapeHtml(reference.name()));
   addTable(page, tests);
   // Pictures, then the maps of each metric.
   // Floats have errors against the reference: tests show theirs where the reference has some.
   size_t number = 0;
-  const bool lit = hasLight(reference.file);
-  const auto pane = [&](const Image8& codes, const ImageFile& light, const std::string& name,
+  const ImageFile& referenceLight = reference.image().file;
+  const bool lit = hasLight(referenceLight);
+  const auto pane = [&](const Image8& picture, const ImageFile& light, const std::string& name,
                         const std::string& label) {
-    return lit && hasLight(light) ? lightPane(codes, light, name, label, number++) : imagePane(codes, name, label);
+    return lit && hasLight(light) ? lightPane(picture, light, name, label, number++) : imagePane(picture, name, label);
   };
-  std::string pictures = pane(reference.codes, reference.file, "reference", referenceFile);
-  for (const MeasuredTest& test : tests) pictures += pane(test.codes, test.light, test.label, test.file);
+  std::string pictures = pane(reference.pictureOf(reference.image()), referenceLight, "reference", reference.name());
+  for (const MeasuredTest& test : tests) pictures += pane(test.picture, test.light, test.label, test.file);
   std::string groups = viewerGroup("Pictures", "", pictures);
   for (size_t i = 0; i < tests.front().scores.size(); ++i) groups += mapGroup(tests, i);
   append(page, "<h3>Pictures and maps</h3>\n{}</main>\n<script>\n{}{}</script>\n</body></html>\n",
-         viewer(groups, {}, exposure), kFloatsJs, kReportJs);
+         viewer(groups, {}, reference.settings().exposure), kFloatsJs, kReportJs);
   return page;
 }
 

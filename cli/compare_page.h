@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "cli/compare_results.h"
+#include "metrics/prepared_reference.h"
 
 namespace wavecrest {
 
-// The page. Every score has its map. exposure: stops, of the codes.
-std::string comparePage(const std::string& referenceFile, const ComparedImage& reference,
-                        const std::vector<MeasuredTest>& tests, double exposure);
+// The page. Every score has its map.
+std::string comparePage(const PreparedReference& reference, const std::vector<MeasuredTest>& tests);
 
 }  // namespace wavecrest

@@ -14,7 +14,7 @@ std::vector<std::string> uniqueLabels(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     const std::string stem = std::filesystem::path(file).stem().string();
     std::string label = stem;
-    while (std::find(labels.begin(), labels.end(), label) != labels.end()) {
+    while (label == "reference" || std::find(labels.begin(), labels.end(), label) != labels.end()) {
       label = fmt::format("{}.{}", stem, ++uses[stem] + 1);
     }
     labels.push_back(std::move(label));

@@ -12,14 +12,15 @@ namespace wavecrest {
 
 struct MeasuredTest {
   std::string file;
-  std::string label;  // names its maps and its column; unique among the tests
-  Image8 codes;       // as the perceptual metrics saw it
+  std::string label;  // names its maps and its pane; unique among the tests
+  Image8 picture;     // by PreparedReference::pictureOf
   ImageFile light;    // as it was read, for --html; else empty
   uint64_t nonFinitePixels = 0;
   std::vector<Measured> scores;
 };
 
-// The stem of each file, with a number where several have the same.
+// The stem of each file, with a number where several have the same, or where it is "reference", which names the
+// reference's pane.
 std::vector<std::string> uniqueLabels(const std::vector<std::string>& files);
 
 // Of one test an object; of several an array of objects that begin with "test", the file.

@@ -175,7 +175,9 @@ Measurement measurePu21Ssim(const PreparedReference& reference, const ComparedIm
   return {{{"", result.mean}}, badness(std::move(result.map))};
 }
 
-constexpr std::string_view kPu21Conditions = "PU21 banding_glare, linear 1.0 shown at 100 cd/m2";
+constexpr std::string_view kHdrVdp2Conditions = "HDR-VDP 2.2.0, sRGB display of 1 to 100 cd/m2, 30 pixels per degree";
+constexpr std::string_view kFlipConditions = "67.02 pixels per degree";
+constexpr std::string_view kPu21Conditions = "PU21 banding_glare, linear 1.0 after --exposure shown at 100 cd/m2";
 
 // clang-format off
 // sampleExponent: the error of a mean of n independent images falls as n^-1/2, its square as n^-1. The perceptual
@@ -200,15 +202,15 @@ constexpr std::array kMetrics{
     Metric{.name = "hdrvdp2", .symbol = "Q_MOS", .title = "HDR-VDP-2.2 mean opinion score",
            .basis = "predicted opinion of viewers, 8-bit sRGB", .formula = "Narwaria et al. 2015", .score = "q_mos", .higherIsBetter = true, .sampleExponent = 0,
            .threshold = "min-qmos", .byDefault = true, .smallestSide = kHdrVdp2SmallestSide, .mapRange = 1,
-           .measure = measureHdrVdp2},
+           .measure = measureHdrVdp2, .conditions = kHdrVdp2Conditions},
     Metric{.name = "flip", .symbol = "FLIP", .title = "LDR-FLIP",
            .basis = "visible difference when flipping, 8-bit sRGB", .formula = "Andersson et al. 2020", .score = "", .higherIsBetter = false, .sampleExponent = 0,
            .threshold = "max-flip", .byDefault = true, .smallestSide = 1, .mapRange = 1,
-           .measure = measureFlip},
+           .measure = measureFlip, .conditions = kFlipConditions},
     Metric{.name = "hdrflip", .symbol = "HDR-FLIP", .title = "HDR-FLIP",
            .basis = "FLIP over a series of exposures", .formula = "Andersson et al. 2021", .score = "", .higherIsBetter = false, .sampleExponent = 0,
            .threshold = "max-hdrflip", .byDefault = false, .smallestSide = 1, .mapRange = 1,
-           .measure = measureHdrFlip},
+           .measure = measureHdrFlip, .conditions = kFlipConditions},
     Metric{.name = "msssim", .symbol = "MS-SSIM", .title = "multi-scale structural similarity",
            .basis = "structure of 8-bit sRGB at five scales", .formula = "Wang et al. 2003", .score = "", .higherIsBetter = true, .sampleExponent = 0,
            .threshold = "min-msssim", .byDefault = true, .smallestSide = kMsSsimSmallestSide, .mapRange = 1,

@@ -1,5 +1,7 @@
 #include "metrics/prepared_reference.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -82,10 +84,12 @@ ComparedImage PreparedReference::prepareTest(const std::string& name, ImageFile 
   return test;
 }
 
-// The part, made by the first thread that asks for it. Other threads wait until it is made.
+// The part, made by the first thread that asks for it. Other threads wait until it is made. Parts are made by parallel
+// loops: isolated, the thread does not run a task of the caller's loop meanwhile, which could ask for the same part and
+// wait for itself.
 template <class T, class Make>
 const T& PreparedReference::get(Lazy<T>& part, Make make) {
-  std::call_once(part.once, [&] { part.value.emplace(make()); });
+  std::call_once(part.once, [&] { tbb::this_task_arena::isolate([&] { part.value.emplace(make()); }); });
   return *part.value;
 }
 
@@ -130,6 +134,10 @@ Image PreparedReference::lightOf(const ComparedImage& test) const {
     std::copy_n(referenceLight.pixels.data() + i, 3, light.pixels.data() + i);
   }
   return light;
+}
+
+Image8 PreparedReference::pictureOf(const ComparedImage& image) const {
+  return image.nonFinitePixels == 0 ? image.codes : codesOf(image.file, settings_.exposure);
 }
 
 }  // namespace wavecrest

@@ -61,6 +61,9 @@ class PreparedReference {
   // Linear light of a test image; excluded pixels take the reference's.
   Image lightOf(const ComparedImage& test) const;
 
+  // 8-bit codes of the reference or a test for a picture of it: NaN is black, infinite light white.
+  Image8 pictureOf(const ComparedImage& image) const;
+
  private:
   template <class T>
   struct Lazy {

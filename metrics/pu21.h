@@ -2,9 +2,10 @@
 //
 // Mantiuk, Azimi, "PU21: A novel perceptually uniform encoding for adapting existing quality metrics for HDR", Picture
 // Coding Symposium 2021; constants and conventions of gfxdisp/pu21, variant "banding_glare". The encoding maps 0.005 to
-// 10000 cd/m2 to 0 to 596 and 100 cd/m2 to about 256, which is the peak that both metrics assume.
+// 10000 cd/m2 to 0 to 595.4 and 100 cd/m2 to about 256, which is the peak that both metrics assume.
 //
-// The display: linear light 1 is shown at 100 cd/m2, more as more, and nothing is added (no glare, no black level).
+// The display: linear light 1, after the exposure, is shown at 100 cd/m2, more as more, and nothing is added (no glare,
+// no black level).
 //  * PSNR: 10 log10(256^2 / mean square difference) over the samples of the three encoded channels; of the encoded
 //    luminance beside it. Equal images would be infinitely good; scores end at kPu21GreatestPsnr.
 //  * SSIM: of the encoded luminance, L = 256, 11x11 Gaussian window of sigma 1.5; the image is continued by its edge
@@ -18,7 +19,7 @@
 
 namespace wavecrest {
 
-constexpr double kPu21WhiteLuminance = 100;  // cd/m2 of linear light 1
+constexpr double kPu21WhiteLuminance = 100;  // cd/m2 of linear light 1, after the exposure
 constexpr double kPu21GreatestPsnr = 100;    // dB
 constexpr double kPu21Brightest = 10'000;    // cd/m2, where the encoding ends; brighter light counts as that
 

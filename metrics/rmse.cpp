@@ -31,8 +31,8 @@ double rmseOf(const AnyImage& reference, const AnyImage& test, Value value) {
         const double difference = value(test, i + c) - value(reference, i + c);
         squares[c] = difference * difference;
       }
-      // inf - inf is NaN, so one test of the sum finds every non-finite sample; a square that overflows is an error
-      // too.
+      // inf - inf is NaN, so one test of the sum finds every non-finite sample. Squares of differences of floats do not
+      // overflow a double.
       if (!std::isfinite(squares[0] + squares[1] + squares[2])) {
         ++rows[y].excluded;
       } else {
@@ -87,7 +87,7 @@ RelmseResult relmse(const Image& reference, const Image& test, const RelmseSetti
   errors.erase(finiteEnd, errors.end());
 
   // Both means from one order: the part below the cut, then the worst pixels.
-  const auto worst = static_cast<size_t>(settings.trimmedFraction * static_cast<double>(errors.size()));
+  const auto worst = static_cast<size_t>(kTrimmedFraction * static_cast<double>(errors.size()));
   const auto cut = errors.end() - static_cast<std::ptrdiff_t>(worst);
   if (worst > 0) std::nth_element(errors.begin(), cut, errors.end());
   const double kept = std::accumulate(errors.begin(), cut, 0.0);

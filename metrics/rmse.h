@@ -17,9 +17,10 @@ double rmse(const Image& reference, const Image& test);
 double rmse(const Image8& reference, const Image8& test);
 
 struct RelmseSettings {
-  double epsilon = 1e-2;          // keeps black pixels from dominating, as in Rousselle et al. 2012
-  double trimmedFraction = 1e-3;  // part of the pixels, those of greatest error, that the trimmed variant leaves out
+  double epsilon = 1e-2;  // keeps black pixels from dominating, as in Rousselle et al. 2012
 };
+
+constexpr double kTrimmedFraction = 1e-3;  // part of the pixels, those of greatest error, that `trimmed` leaves out
 
 struct RelmseResult {
   double relmse = 0;   // mean over pixels of mean over channels of (test - reference)^2 / (reference^2 + epsilon)

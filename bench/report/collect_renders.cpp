@@ -129,12 +129,21 @@ SceneReference readReference(const std::vector<fs::path>& files, const std::stri
   return {PreparedReference(files[0].string(), std::move(mean)), std::move(floors), std::move(origin)};
 }
 
+// Adds a remark where pixels are not finite. images: which ones they belong to.
+void addNonFiniteRemark(std::vector<std::string>& remarks, const std::string& scene, uint64_t pixels,
+                        const std::string& images) {
+  if (pixels == 0) return;
+  remarks.push_back(fmt::format("{}: {} pixels of {} are not finite; scores leave them out.", scene, pixels, images));
+}
+
 // Measures one snapshot. A metric that needs a larger image gets NaN; scores besides the main one go into `further`.
-ReportPoint measure(const SnapshotFile& snapshot, const PreparedReference& reference) {
+// Adds the pixels that are finite in the reference alone to nonFinitePixels.
+ReportPoint measure(const SnapshotFile& snapshot, const PreparedReference& reference, uint64_t& nonFinitePixels) {
   ReportPoint point{
       .number = snapshot.number, .seconds = snapshot.seconds, .iterations = snapshot.iterations, .values = {}};
   const std::string path = snapshot.image.string();
   const ComparedImage image = reference.prepareTest(path, readImage(path));
+  nonFinitePixels += image.nonFinitePixels - reference.image().nonFinitePixels;
   for (const Metric* metric : reportedMetrics()) {
     if (std::min(image.codes.width, image.codes.height) < metric->smallestSide) {
       point.values.push_back(std::numeric_limits<double>::quiet_NaN());
@@ -163,21 +172,25 @@ void addStages(std::vector<ReportStage>& sums, const nlohmann::json& stats) {
   }
 }
 
-// Measures all runs of a group and sums up what they cost.
+// Measures all runs of a group and sums up what they cost. Adds to the report's remarks.
 ReportSeries collectSeries(const std::vector<RunFile*>& runs, const std::string& label,
-                           const PreparedReference& reference) {
+                           const PreparedReference& reference, std::vector<std::string>& remarks) {
   ReportSeries series;
   series.method = methodId(runs.front()->method);
   series.label = label;
   std::vector<const nlohmann::json*> stats;
+  uint64_t nonFinitePixels = 0;
   for (const RunFile* run : runs) {
     ReportRun measured{.seed = run->seed, .points = {}};
-    for (const SnapshotFile& snapshot : run->snapshots) measured.points.push_back(measure(snapshot, reference));
+    for (const SnapshotFile& snapshot : run->snapshots) {
+      measured.points.push_back(measure(snapshot, reference, nonFinitePixels));
+    }
     series.runs.push_back(std::move(measured));
     stats.push_back(&run->stats);
     addStages(series.stages, run->stats);
   }
   addSeriesFacts(series, stats);
+  addNonFiniteRemark(remarks, runs.front()->scene, nonFinitePixels, "images of " + label);
   return series;
 }
 
@@ -224,6 +237,7 @@ ReportScene collectScene(const RenderFolder& from, const std::string& name, cons
   scene.height = reference.image.image().codes.height;
   scene.referenceOrigin = reference.origin;
   scene.noiseFloors = reference.noiseFloors;
+  addNonFiniteRemark(remarks, name, reference.image.image().nonFinitePixels, "the reference");
   // Each series shows images of its first run.
   std::vector<std::vector<TimedImage>> images;
   const auto groups = groupBySettings(runs);
@@ -231,7 +245,7 @@ ReportScene collectScene(const RenderFolder& from, const std::string& name, cons
     const std::string label = seriesLabel(groups, *group[0]);
     numberSnapshots(group);
     if (std::string remark = remarkOnEnds(group, label); !remark.empty()) remarks.push_back(std::move(remark));
-    scene.series.push_back(collectSeries(group, label, reference.image));
+    scene.series.push_back(collectSeries(group, label, reference.image, remarks));
     auto& run = images.emplace_back();
     for (const SnapshotFile& snapshot : group[0]->snapshots) run.push_back({snapshot.seconds, snapshot.image});
   }

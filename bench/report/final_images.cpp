@@ -22,8 +22,9 @@ constexpr double kLeastRange = 0.02;                     // a map of nothing but
 constexpr double kEarlierParts[] = {1 / 16.0, 1 / 4.0};  // of the longest run, at which there are pictures too
 constexpr double kMostApart = 2.5;                       // times: an image further from such a time is not shown there
 
-ReportImage shownImage(std::string label, Image8 codes) {
-  return {.label = std::move(label), .width = codes.width, .height = codes.height, .rgb = std::move(codes.pixels)};
+ReportImage shownImage(std::string label, Image8 picture) {
+  return {
+      .label = std::move(label), .width = picture.width, .height = picture.height, .rgb = std::move(picture.pixels)};
 }
 
 // Of an image of light in colour.
@@ -48,7 +49,8 @@ void addEarlierImages(ReportScene& scene, const PreparedReference& reference,
                             [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
       if (!(distance(near) < std::log(kMostApart))) continue;
       const ComparedImage test = reference.prepareTest(near.file.string(), readImage(near.file.string()));
-      images[i] = shownImage(fmt::format("{}, {}", scene.series[i].label, formatSeconds(near.seconds)), test.codes);
+      images[i] = shownImage(fmt::format("{}, {}", scene.series[i].label, formatSeconds(near.seconds)),
+                             reference.pictureOf(test));
       if (!scene.reference.floats.empty()) addFloats(images[i], test.file);
     }
     if (std::ranges::all_of(images, [](const ReportImage& image) { return image.rgb.empty(); })) continue;
@@ -61,7 +63,7 @@ void addEarlierImages(ReportScene& scene, const PreparedReference& reference,
 
 void addImages(ReportScene& scene, const PreparedReference& reference,
                const std::vector<std::vector<TimedImage>>& files) {
-  scene.reference = shownImage("reference", reference.image().codes);
+  scene.reference = shownImage("reference", reference.pictureOf(reference.image()));
   addFloats(scene.reference, reference.image().file);
   const Metric& metric = *findMetric(kMapMetric);
   std::vector<Measurement> measured(scene.series.size());
@@ -74,7 +76,7 @@ void addImages(ReportScene& scene, const PreparedReference& reference,
     measured[i] = metric.measure(reference, test, true);
     range = std::max(range, quantile(measured[i].map, kShownPart));
     series.finalImage =
-        shownImage(fmt::format("{}, {}", series.label, formatSeconds(finalSeconds(series))), test.codes);
+        shownImage(fmt::format("{}, {}", series.label, formatSeconds(finalSeconds(series))), reference.pictureOf(test));
     if (!scene.reference.floats.empty()) addFloats(series.finalImage, test.file);
   }
   for (size_t i = 0; i < scene.series.size(); ++i) {

@@ -19,7 +19,9 @@
 #include <cstring>
 #include <exception>
 #include <list>
+#include <memory>
 #include <mutex>
+#include <new>
 #include <thread>
 
 #include "metrics/image/atomic_file.h"
@@ -248,6 +250,17 @@ Metadata stringAttributes(const Imf::Header& header) {
   return metadata;
 }
 
+// Opens a file. OpenEXR allocates the blocks that the header announces before their size can be checked, so that a lack
+// of memory may mean a damaged header here.
+std::unique_ptr<Imf::InputFile> openExr(const std::string& path, Imf::IStream& stream) {
+  try {
+    return std::make_unique<Imf::InputFile>(stream, 0);
+  } catch (const std::bad_alloc&) {
+    throw ImageError(path, "blocks of the EXR header's size do not fit into memory",
+                     "expected an intact EXR file, or more memory");
+  }
+}
+
 // One layer of a file in memory. Errors of OpenEXR become ImageErrors.
 ImageFile readLayerAndMetadata(const std::string& path, codecs::Bytes bytes, const std::string& layer) {
   try {
@@ -255,14 +268,16 @@ ImageFile readLayerAndMetadata(const std::string& path, codecs::Bytes bytes, con
     useBlockPoolOnce();
     codecs::checkExrHeader(path, bytes);
     MemoryInput stream(path, bytes);
-    Imf::InputFile input(stream, 0);
+    const std::unique_ptr<Imf::InputFile> input = openExr(path, stream);
     ImageFile file;
-    file.image = readLayer(path, input, bytes.size(), layer);
-    file.metadata = stringAttributes(input.header());
-    const Imath::Box2i& window = input.header().dataWindow();
+    file.image = readLayer(path, *input, bytes.size(), layer);
+    file.metadata = stringAttributes(input->header());
+    const Imath::Box2i& window = input->header().dataWindow();
     file.corner = {window.min.x, window.min.y};
     return file;
   } catch (const ImageError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
     throw ImageError(path, std::string("OpenEXR error: ") + error.what(), "expected an intact EXR file");
@@ -369,6 +384,8 @@ void writeExr(const std::string& path, const Image& image, const Metadata& metad
     }
     stream.commit();
   } catch (const ImageError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
     throw ImageError(path, std::string("OpenEXR error: ") + error.what(), "expected an image that can be written");

@@ -103,6 +103,8 @@ void appendBytes(png_structp png, png_bytep data, size_t count) {
 // A whole file of 8-bit RGB. False: writer.message tells why.
 bool writeRows(PngWriter& writer, uint32_t width, uint32_t height, const uint8_t* pixels) {
   if (setjmp(png_jmpbuf(writer.png))) return false;
+  // Without this libpng refuses sides longer than 1,000,000.
+  png_set_user_limits(writer.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   png_set_write_fn(writer.png, &writer, appendBytes, nullptr);
   png_set_IHDR(writer.png, writer.info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);

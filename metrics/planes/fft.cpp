@@ -65,7 +65,7 @@ void FftPlan::makeChirp() {
   // The conjugate chirp, even about element 0 of the cyclic convolution. One lane of the batch is enough.
   AlignedArray<float> batch(n * kFftElement), work(inner_->workFloats());
   for (size_t k = 0; k < length_; ++k) {
-    // k^2 modulo 2 length keeps the angle exact; k < 2^20, so the square fits.
+    // k^2 modulo 2 length keeps the angle exact; k < 2^32, so the square fits.
     const std::complex<double> c = rootOfUnity(k * k % (2 * length_), 2 * length_);
     append(chirp_, c);
     for (size_t at : {k, (n - k) % n}) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -162,6 +163,33 @@ TEST_F(CollectRenders, showsTheLastImageAndItsErrorMapOnTheScenesScale) {
   EXPECT_EQ(perfect.errorMap.rgb[0], 0);
   EXPECT_GT(*std::max_element(noisy.errorMap.rgb.begin(), noisy.errorMap.rgb.end()), 240);
   EXPECT_NE(scene.errorMapScale.find("FLIP"), std::string::npos);
+}
+
+TEST_F(CollectRenders, pixelsThatAreNotFiniteAreShownAndRemarked) {
+  addRun("box.pt");
+  Image image = speckled(0.1F);
+  std::fill_n(image.pixels.begin(), 6, std::numeric_limits<float>::quiet_NaN());  // two pixels
+  for (const char* snapshot : {"box.pt.000.exr", "box.pt.001.exr"}) writeExr((folder / snapshot).string(), image);
+  const ConvergenceReport report = collectRenders(folder);
+  EXPECT_EQ(report.remarks,
+            std::vector<std::string>{"box: 4 pixels of images of pt are not finite; scores leave them out."});
+  const ReportSeries& series = report.scenes.at(0).series.at(0);
+  for (const ReportImage& shown : {series.finalImage, series.earlierImages.at(0)}) {
+    ASSERT_GT(shown.rgb.size(), 6U);
+    EXPECT_EQ(shown.rgb[0], 0) << "and not the reference's";
+    EXPECT_EQ(shown.rgb[6], srgbCode(0.6F));
+  }
+}
+
+TEST_F(CollectRenders, pixelsOfTheReferenceThatAreNotFiniteAreNoFaultOfTheRuns) {
+  addRun("box.pt");
+  Image mean = speckled(0);
+  mean.pixels[0] = mean.pixels[3] = std::numeric_limits<float>::infinity();
+  writeWhole(folder / "box.reference.exr", mean);
+  const ConvergenceReport report = collectRenders(folder);
+  EXPECT_EQ(report.remarks,
+            std::vector<std::string>{"box: 2 pixels of the reference are not finite; scores leave them out."});
+  EXPECT_EQ(report.scenes.at(0).reference.rgb.at(0), 255);
 }
 
 TEST_F(CollectRenders, meanOfTwoHalvesIsTheReferenceAndHalfTheirDifferenceItsNoise) {

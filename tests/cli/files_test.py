@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import resource
+import struct
 import subprocess
 import unittest
 
@@ -201,6 +202,25 @@ class Warnings(CommandTest):
         self.assertNotIn("no light", self.render("--spp", "1").stderr)
 
 
+def exr_without_pixels(width, height):
+    """A whole header and a table of blocks that are not there, for readers that do not get as far as the pixels."""
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    attributes = (
+        (b"channels", b"chlist", b"Y\0" + struct.pack("<iB3xii", 1, 0, 1, 1) + b"\0"),  # halves
+        (b"compression", b"compression", b"\x03"),  # ZIP, 16 rows a block
+        (b"dataWindow", b"box2i", window),
+        (b"displayWindow", b"box2i", window),
+        (b"lineOrder", b"lineOrder", b"\0"),
+        (b"pixelAspectRatio", b"float", struct.pack("<f", 1)),
+        (b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0)),
+        (b"screenWindowWidth", b"float", struct.pack("<f", 1)),
+    )
+    header = struct.pack("<2i", 20000630, 2)
+    for name, kind, value in attributes:
+        header += name + b"\0" + kind + b"\0" + struct.pack("<i", len(value)) + value
+    return header + b"\0" + struct.pack("<q", 1) * (height // 16)
+
+
 class Resources(CommandTest):
     def limited(self, kind, value, *arguments):
         return subprocess.run(
@@ -211,6 +231,12 @@ class Resources(CommandTest):
     def test_out_of_memory_is_one_clear_line(self):
         result = self.limited(resource.RLIMIT_AS, 1 << 30, "render", "cornell-diffuse", "--size", "16000x16000",
                               "--spp", "1", "--threads", "1")  # fmt: skip
+        self.assertEqual(result.returncode, FAILURE, result.stderr)
+        self.assert_one_error_line(result, r"out of memory; expected")
+
+    def test_an_image_larger_than_memory_is_no_damaged_file(self):
+        self.write("large.exr", exr_without_pixels(16384, 8192))  # 1.5 GB as floats
+        result = self.limited(resource.RLIMIT_AS, 1 << 30, "compare", "large.exr", "large.exr")
         self.assertEqual(result.returncode, FAILURE, result.stderr)
         self.assert_one_error_line(result, r"out of memory; expected")
 

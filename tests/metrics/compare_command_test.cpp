@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image_io.h"
@@ -15,6 +18,24 @@ namespace wavecrest {
 namespace {
 
 using test::runCompare;
+
+// How often a text has a part.
+size_t countOf(const std::string& text, const std::string& part) {
+  size_t count = 0;
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+// The embedded pictures of a page, in their order.
+std::vector<std::string> picturesOf(const std::string& page) {
+  const std::string begin = "src=\"data:image/png;base64,";
+  std::vector<std::string> pictures;
+  for (size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at + 1)) {
+    const size_t first = at + begin.size();
+    pictures.push_back(page.substr(first, page.find('"', first) - first));
+  }
+  return pictures;
+}
 
 class CompareCommand : public ::testing::Test {
  protected:
@@ -54,10 +75,13 @@ TEST_F(CompareCommand, LeavesOutDefaultMetricsThatTheImageIsTooSmallFor) {
 }
 
 TEST_F(CompareCommand, PrintsVersionsAndDisplaysThatScoresDependOn) {
-  const auto run = runCompare({golden("ref"), golden("test"), "--metrics", "cvvdp,pu21psnr"});
+  const auto run = runCompare({golden("ref"), golden("test"), "--metrics", "hdrvdp2,flip,hdrflip,cvvdp,pu21psnr"});
   EXPECT_NE(run.output.find("ColorVideoVDP v0.5.7, 75.4 [pix/deg]"), std::string::npos) << run.output;
+  EXPECT_EQ(countOf(run.output, "(67.02 pixels per degree)"), 2u) << "of flip and hdrflip: " << run.output;
   const auto json = runCompare({golden("ref"), golden("test"), "--json"}).json();
-  EXPECT_EQ(json["conditions"]["pu21psnr"], "PU21 banding_glare, linear 1.0 shown at 100 cd/m2");
+  EXPECT_EQ(json["conditions"]["pu21psnr"], "PU21 banding_glare, linear 1.0 after --exposure shown at 100 cd/m2");
+  EXPECT_EQ(json["conditions"]["hdrvdp2"], "HDR-VDP 2.2.0, sRGB display of 1 to 100 cd/m2, 30 pixels per degree");
+  EXPECT_FALSE(json["conditions"].contains("rmse"));
   EXPECT_NEAR(json["cvvdp"], 8.877741813659668, 1e-4);
 }
 
@@ -239,19 +263,51 @@ TEST_F(CompareCommand, ThePageHoldsScoresImagesAndMaps) {
   ASSERT_EQ(run.exitCode, kExitDone) << run.error;
   const std::vector<unsigned char> bytes = readFileBytes(page);
   const std::string text(bytes.begin(), bytes.end());
-  size_t images = 0;
-  for (size_t at = text.find("<img "); at != std::string::npos; at = text.find("<img ", at + 1)) ++images;
-  EXPECT_EQ(images, 1u + 2 * (1 + 2)) << "the reference, and of each test itself and a map for each metric";
+  EXPECT_EQ(countOf(text, "<img "), 1u + 2 * (1 + 2))
+      << "the reference, and of each test itself and a map for each metric";
   EXPECT_NE(text.find("<td class=\"n\">0.0516611</td><td class=\"n best\">0</td>"), std::string::npos);
   EXPECT_EQ(text.find("src=\"http"), std::string::npos) << "it opens offline";
   EXPECT_NE(text.find("<div class=\"viewer\">"), std::string::npos) << "as reports have";
   EXPECT_NE(text.find("data-kind=\"FLIP\""), std::string::npos);
   EXPECT_NE(text.find("<div class=\"facts head\">FLIP: Andersson et al. 2020<span class=\"scale\">"),
             std::string::npos);
+  EXPECT_NE(text.find("Andersson et al. 2020; less is better; 67.02 pixels per degree</small>"), std::string::npos);
+  EXPECT_NE(text.find("; of half floats: light beyond 65504 counts as that"), std::string::npos) << "errors of crops";
   const auto onStdout =
       runCompare({golden("ref"), golden("test"), "--metrics", "rmse", "--html", "-", "--map", files_.path("maps")});
   EXPECT_EQ(onStdout.output.find("<!"), 0u) << "a page on stdout is alone there";
   EXPECT_EQ(onStdout.output.find("map " + files_.path("maps")), std::string::npos) << onStdout.output.substr(0, 80);
+}
+
+// Metrics leave such pixels out; pictures must not show the reference in their place.
+TEST_F(CompareCommand, ThePageShowsPixelsThatAreNotFinite) {
+  const auto write = [&](const std::string& name, float upper) {
+    Image image{32, 32, 3, std::vector<float>(32 * 32 * 3, 0.5f)};
+    std::fill_n(image.pixels.begin(), image.pixels.size() / 2, upper);
+    writeExr(files_.path(name), image);
+  };
+  write("grey.exr", 0.5f);
+  write("nan.exr", std::numeric_limits<float>::quiet_NaN());
+  write("infinite.exr", std::numeric_limits<float>::infinity());
+  const auto pictures = [&](const std::string& reference, const std::string& test) {
+    const auto run = runCompare({files_.path(reference), files_.path(test), "--metrics", "rmse", "--html", "-"});
+    std::vector<std::string> found = picturesOf(run.output);
+    EXPECT_EQ(found.size(), 3u) << "reference, test and map; " << run.error;
+    found.resize(3);
+    return found;
+  };
+  const auto black = pictures("grey.exr", "nan.exr"), white = pictures("infinite.exr", "infinite.exr");
+  EXPECT_NE(black[0], black[1]);
+  EXPECT_EQ(white[0], white[1]) << "reference and test are drawn alike";
+  EXPECT_NE(black[1], white[1]);
+}
+
+TEST_F(CompareCommand, ATestNamedReferenceHasAPaneOfItsOwn) {
+  writePng(files_.path("a.png"), test::patternImage(32, 32));
+  writePng(files_.path("reference.png"), test::patternImage(32, 32));
+  const auto run = runCompare({files_.path("a.png"), files_.path("reference.png"), "--metrics", "rmse", "--html", "-"});
+  EXPECT_EQ(countOf(run.output, "data-name=\"reference\""), 1u);
+  EXPECT_EQ(countOf(run.output, "data-name=\"reference.2\""), 2u) << "its picture and its map";
 }
 
 TEST_F(CompareCommand, ThePageSaysTheExposureOfItsPictures) {

@@ -118,6 +118,13 @@ TEST_F(ImageFiles, PngKeepsEveryCode) {
   EXPECT_EQ(test::codesOf(file.image).pixels, image.pixels);
 }
 
+// libpng's own limit is 1,000,000 pixels a side.
+TEST(Png, LongRowsAreWritten) {
+  constexpr uint32_t kWidth = 1'000'001;
+  const std::vector<uint8_t> row(size_t{3} * kWidth);
+  EXPECT_NO_THROW(encodePng("row.png", kWidth, 1, row.data()));
+}
+
 // Two pixels of a palette of red and azure, each with an alpha value (chunk tRNS).
 TEST_F(ImageFiles, APngWithAPaletteAndAlphaIsRead) {
   const unsigned char bytes[] = {

@@ -106,7 +106,7 @@ function cropErrors(test, reference, crop) {
   return { RMSE: Math.sqrt(square / count), relMSE: relative / count, MAPE: percent / count };
 }
 const kCropMetrics = ["RMSE", "relMSE", "MAPE"];
-const kCropFormulas = "RMSE: root of the mean of (x − r)²; relMSE: mean of (x − r)² / (r² + 0.01); MAPE: mean of |x − r| / (|r| + 0.01)";
+const kCropFormulas = "RMSE: root of the mean of (x − r)²; relMSE: mean of (x − r)² / (r² + 0.01); MAPE: mean of |x − r| / (|r| + 0.01); of half floats: light beyond 65504 counts as that";
 
 const kPointText = "point at an image: values";
 
