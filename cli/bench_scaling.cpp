@@ -1,6 +1,7 @@
 // wavecrest bench --scaling: how methods grow with threads.
 #include <nlohmann/json.hpp>
 
+#include "bench/against/child_render.h"
 #include "bench/scaling/scaling.h"
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
@@ -15,6 +16,8 @@ constexpr double kScalingSeconds = 20;
 
 int runBenchScaling(const BenchOptions& options) {
   const double seconds = benchSeconds(options, kScalingSeconds);
+  // Processes write into such folders. What is wrong with them is said before anything is measured.
+  { const ScratchFolder probe; }
   nlohmann::ordered_json all = {{"results", nlohmann::ordered_json::array()}};
   forEachBenchCase(options, parseMethodList(options.methods), [&](const BenchCase& one) {
     const ScalingResult result = measureScaling(one.scene, one.file, one.settings, seconds);

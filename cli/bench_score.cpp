@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "bench/against/child_render.h"
 #include "bench/score/score.h"
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
@@ -103,6 +104,8 @@ int runBenchScore(const BenchOptions& options) {
                              .threads = threads,
                              .sceneFile = findScene,
                              .references = sceneFolder() / "references"};
+  // Processes write into such folders. What is wrong with them is said before anything is measured.
+  { const ScratchFolder probe; }
   printBench(options, scoreHeading(request));
   // Measures. Each row is printed once it is measured.
   ExpectedImages expected = ExpectedImages::committed();

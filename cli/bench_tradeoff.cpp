@@ -16,12 +16,12 @@ constexpr double kTradeSeconds = 60;
 // Beyond it, images of a setting take long; settings are compared as well on small ones.
 constexpr uint32_t kMostColumns = 256;
 
-// The scene on a film of --size, or on its own if that is not too wide.
+// The scene on a film of --size, or on its own if its image is not too wide.
 Scene tradeScene(const BenchOptions& options, const std::filesystem::path& file) {
   LoadOptions loading = benchLoading(options);
   Scene scene = loadScene(file, loading);
   const FilmSettings& film = scene.film;
-  if (loading.filmSize || film.width <= kMostColumns) return scene;
+  if (loading.filmSize || film.imageWidth() <= kMostColumns) return scene;
   loading.filmSize = {kMostColumns, std::max(1u, film.height * kMostColumns / film.width)};
   return loadScene(file, loading);
 }

@@ -44,6 +44,8 @@ Failure failureOf(const std::exception_ptr& thrown) {
     return error(kExitInput, kForeignJson);
   } catch (const ChildStopped& child) {
     return error(kExitInterrupted, child.what());
+  } catch (const ChildError& child) {
+    return error(kExitFailure, child.what());
   } catch (const RanksError& ranks) {
     return error(kExitFailure, ranks.what());
   } catch (const std::bad_alloc&) {

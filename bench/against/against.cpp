@@ -120,10 +120,11 @@ class Runner {
     ChildRequest& child = children_[i];
     const std::string file = (folder_.path() / "image.pfm").string();
     child.imageFile = file;
-    const nlohmann::json other = render(other_, child);
-    const Image otherImage = readImage(file).image;
+    // Ours first: the other build's patience follows from how long it took.
     const nlohmann::json ours = render(ours_, child);
-    compareImages(readImage(file).image, otherImage, result_.rows[i]);
+    const Image ourImage = readImage(file).image;
+    const nlohmann::json other = render(other_, child);
+    compareImages(ourImage, readImage(file).image, result_.rows[i]);
     child.imageFile.reset();
     result_.ourVersion = versionOf(ours);
     result_.otherVersion = versionOf(other);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "bench/text_lines.h"
 
@@ -16,8 +17,14 @@ using Json = nlohmann::json;
 
 constexpr const char* kNoResult = "is not a result of wavecrest bench; expected one written by --json";
 
-// CPU seconds per path on one thread, the median of each visit, by "scene method WxH".
-using Series = std::map<std::string, std::vector<double>>;
+// What one result has of a scene, method and size.
+struct Measured {
+  std::string sceneHash;
+  std::vector<double> visits;  // CPU seconds per path on one thread, the median of each visit
+};
+
+// By "scene method WxH".
+using Series = std::map<std::string, Measured>;
 
 // CPU seconds per path of a method on one thread, the median of each visit; empty if one thread was not measured. The
 // slices of one visit are not independent: a machine whose speed drifts moves them together.
@@ -38,7 +45,8 @@ std::vector<double> visitsOfOneThread(const Json& method) {
   return medians;
 }
 
-// The series of all scenes and methods. Throws StoredMismatch where the file is not of bench.
+// The series of all scenes and methods. Throws StoredMismatch where the file is not of bench, or has two scenes of one
+// name.
 Series seriesOf(const Json& result) {
   Series series;
   try {
@@ -47,9 +55,12 @@ Series seriesOf(const Json& result) {
         const std::string name =
             fmt::format("{} {} {}x{}", scene.at("scene").get<std::string>(), method.at("method").get<std::string>(),
                         scene.at("width").get<int>(), scene.at("height").get<int>());
-        const std::vector<double> values = visitsOfOneThread(method);
+        Measured own{.sceneHash = scene.value("scene_hash", ""), .visits = visitsOfOneThread(method)};
         // Without visits on one thread there is nothing to compare.
-        if (!values.empty()) series[name] = values;
+        if (own.visits.empty()) continue;
+        if (!series.emplace(name, std::move(own)).second) {
+          throw StoredMismatch(fmt::format("have {} twice; expected scenes of different names", name));
+        }
       }
     }
   } catch (const Json::exception&) {
@@ -69,6 +80,14 @@ std::string machineOf(const Json& result) {
   }
 }
 
+// The smallest probability that the rank-sum test gives to so many values: all of one side are above those of the
+// other.
+double leastProbability(size_t a, size_t b) {
+  double choices = 1;  // of the ranks of one side
+  for (size_t i = 1; i <= a; ++i) choices *= static_cast<double>(b + i) / static_cast<double>(i);
+  return std::min(1.0, 2 / choices);
+}
+
 }  // namespace
 
 bool StoredComparison::anySlower() const {
@@ -84,11 +103,16 @@ StoredComparison compareStored(const Json& before, const Json& after, const Fami
   }
   // Compare the series that both have.
   StoredComparison result{.family = family, .rows = {}, .unmatched = {}};
-  for (const auto& [name, values] : old) {
+  double least = 1;
+  for (const auto& [name, earlier] : old) {
     const auto found = now.find(name);
     if (found == now.end()) {
       result.unmatched.push_back(name);
       continue;
+    }
+    const Measured& later = found->second;
+    if (later.sceneHash != earlier.sceneHash) {
+      throw StoredMismatch(fmt::format("have another scene by the same name: {}", name));
     }
     StoredRow& row = result.rows.emplace_back();
     // The name is "scene method WxH". Only the scene's own may have blanks.
@@ -97,10 +121,11 @@ StoredComparison compareStored(const Json& before, const Json& after, const Fami
     row.method = name.substr(first + 1, second - first - 1);
     row.size = name.substr(second + 1);
     // The later result is in the place of "ours": a speedup above 1 means that it is faster.
-    row.comparison = compareUnpaired(found->second, values, family);
+    row.comparison = compareUnpaired(later.visits, earlier.visits, family);
+    least = std::min(least, leastProbability(later.visits.size(), earlier.visits.size()));
   }
   // Name the series that only the later result has.
-  for (const auto& [name, values] : now) {
+  for (const auto& [name, later] : now) {
     if (old.count(name) == 0) result.unmatched.push_back(name);
   }
   if (result.rows.empty()) throw StoredMismatch("have no scene, method and size in common");
@@ -108,6 +133,7 @@ StoredComparison compareStored(const Json& before, const Json& after, const Fami
   std::vector<Comparison*> comparisons;
   for (StoredRow& row : result.rows) comparisons.push_back(&row.comparison);
   judge(comparisons, family);
+  result.leastProbability = std::min(1.0, least * static_cast<double>(result.rows.size()));
   return result;
 }
 
@@ -125,6 +151,11 @@ std::string toText(const StoredComparison& result) {
        "\nspeed: of the second over the first, CPU time per path on one thread; p: rank-sum test of visits, corrected");
   line(text, "for {} comparisons. They were not measured in turn: --against tells a build from a machine that changed.",
        result.rows.size());
+  if (!result.verdictsPossible()) {
+    line(text, "No verdict is possible: ranks of so few visits have a p of {:.2g} or more here, and the level is {:g};",
+         result.leastProbability, result.family.level);
+    line(text, "choose fewer scenes and methods, or a higher --family-level.");
+  }
   return fmt::to_string(text);
 }
 
@@ -143,6 +174,7 @@ nlohmann::ordered_json toJson(const StoredComparison& result) {
   return {{"family_level", result.family.level},
           {"tolerance", result.family.tolerance},
           {"interval_level", kIntervalLevel},
+          {"least_probability", result.leastProbability},
           {"comparisons", rows},
           {"unmatched", result.unmatched}};
 }

@@ -27,10 +27,15 @@ struct StoredComparison {
   FamilyLevel family;
   std::vector<StoredRow> rows;         // what both have measured
   std::vector<std::string> unmatched;  // what only one has
+  // The smallest that the test can give with so few visits, corrected for the rows. Above the level no row has a
+  // verdict.
+  double leastProbability = 0;
   bool anySlower() const;
+  bool verdictsPossible() const { return leastProbability <= family.level; }
 };
 
-// Throws StoredMismatch for files that are not of bench, of other machines, or without anything in common.
+// Throws StoredMismatch for files that are not of bench, of other machines, or without anything in common, and where
+// two scenes have one name.
 StoredComparison compareStored(const nlohmann::json& before, const nlohmann::json& after, const FamilyLevel& family);
 
 std::string toText(const StoredComparison& comparison);

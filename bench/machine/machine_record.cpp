@@ -18,7 +18,7 @@ MachineRecord readMachine() {
   const std::string info = systemFile("/proc/cpuinfo");
   MachineRecord machine{.cpu = cpuName(info),
                         .topology = topologyOfThisMachine(),
-                        .cpuLimit = parseCpuMax(systemFile("/sys/fs/cgroup/cpu.max")),
+                        .cpuLimit = leastCpuMax(systemFile("/proc/self/cgroup"), systemFile),
                         .governor = orUnknown(systemFile("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")),
                         .mhz = measuredMhz(),
                         .hugePages = orUnknown(chosenWord(systemFile("/sys/kernel/mm/transparent_hugepage/enabled"))),

@@ -1,5 +1,6 @@
 #include "bench/machine/system_files.h"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <iterator>
@@ -30,6 +31,23 @@ std::optional<double> parseCpuMax(std::string_view text) {
   double quota = 0, period = 0;
   if (!(in >> quota >> period) || quota <= 0 || period <= 0) return std::nullopt;
   return quota / period;
+}
+
+std::optional<double> leastCpuMax(std::string_view ownGroups,
+                                  const std::function<std::string(const std::string&)>& read) {
+  // The line "0::/path" is that of version 2. Without it the root stands for the group.
+  std::istringstream in{std::string(ownGroups)};
+  std::string group;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("0::/") && line != "0::/") group = line.substr(3);
+  }
+  // The group and its parents. The root's path is empty.
+  std::optional<double> least;
+  for (;; group.erase(group.rfind('/'))) {
+    const std::optional<double> limit = parseCpuMax(read("/sys/fs/cgroup" + group + "/cpu.max"));
+    if (limit) least = std::min(*limit, least.value_or(*limit));
+    if (group.empty()) return least;
+  }
 }
 
 std::string chosenWord(std::string_view text) {

@@ -1,6 +1,7 @@
 // The text files in which Linux tells about itself, read: pure functions of their text, for tests without a machine.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +21,11 @@ std::optional<CpuTimes> parseProcStat(std::string_view text, double ticksPerSeco
 
 // How many cores' worth of time a control group may use: cpu.max of version 2, "max 100000" or "150000 100000".
 std::optional<double> parseCpuMax(std::string_view text);
+
+// The least of what the control group of version 2 that /proc/self/cgroup names and its parents may use; nothing where
+// none is limited. read: systemFile, or a substitute.
+std::optional<double> leastCpuMax(std::string_view ownGroups,
+                                  const std::function<std::string(const std::string&)>& read);
 
 // The chosen word of a list such as "always [madvise] never"; empty if none is in brackets.
 std::string chosenWord(std::string_view text);

@@ -52,6 +52,9 @@ def parse_arguments():
         if unknown := [word for word in chosen if word not in known]:
             parser.error(f"--{name}: unknown '{unknown[0]}'; expected some of {','.join(known)}")
         setattr(options, name, chosen)
+    for method in options.methods:
+        if not any(method in PROGRAMS[name][0] for name in options.programs):
+            parser.error(f"--methods: none of {','.join(options.programs)} has '{method}'")
     if options.rounds < 2:
         parser.error("--rounds: expected at least 2, variance needs them")
     if "smallvcm" in options.programs and not options.smallvcm:

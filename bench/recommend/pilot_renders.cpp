@@ -64,6 +64,12 @@ RenderSettings pilotSettings(RenderSettings settings, Method method) {
   return settings;
 }
 
+RenderSettings referenceSettings(const RenderSettings& settings, const ReferenceChoice& choice) {
+  RenderSettings own = pilotSettings(settings, choice.method);
+  if (choice.biased) own.radius = kFixedRadius;
+  return own;
+}
+
 PilotRender renderPilot(const Scene& scene, RenderSettings settings, uint64_t firstSeed, double seconds,
                         ClockKind clock, bool biased) {
   PilotRender result;

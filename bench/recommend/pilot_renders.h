@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bench/recommend/prediction.h"
+#include "engine/inspect/path_classes.h"
 #include "engine/plan/clock_kind.h"
 #include "engine/session/session.h"
 
@@ -20,6 +21,9 @@ struct PilotRender {
 
 // What `render` takes for the method, its sampler with it. settings: of all pilots.
 RenderSettings pilotSettings(RenderSettings settings, Method method);
+
+// Those of the reference: pilotSettings, and kFixedRadius where it is biased. An automatic radius may be far larger.
+RenderSettings referenceSettings(const RenderSettings& settings, const ReferenceChoice& choice);
 
 // Four renders with seeds from firstSeed on, each for a quarter of the seconds. biased: as of Pilot.
 PilotRender renderPilot(const Scene& scene, RenderSettings settings, uint64_t firstSeed, double seconds,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bench/recommend/duration_words.h"
+#include "bench/statistics/biased_reference.h"
 #include "bench/statistics/chains_mislead.h"
 #include "engine/inspect/path_classes.h"
 #include "engine/scene/scene_error.h"
@@ -101,7 +102,8 @@ Recommendation recommend(const Scene& scene, const RenderSettings& settings, con
   // The reference, by the method that `inspect` names.
   const PathClassTable classes = classifyPaths(scene);
   result.referenceMethod = classes.reference.method;
-  const PilotRender rendered = renderPilot(scene, pilotSettings(settings, result.referenceMethod), kReferenceSeed,
+  if (classes.reference.biased) result.doubts.push_back(referenceBlurs(result.referenceMethod));
+  const PilotRender rendered = renderPilot(scene, referenceSettings(settings, classes.reference), kReferenceSeed,
                                            kReferencePart * request.seconds, request.clock, false);
   if (!rendered.pilot) {
     result.untold = fmt::format("the reference, by {}, has no whole images by then", toString(result.referenceMethod));

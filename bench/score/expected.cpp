@@ -87,13 +87,6 @@ void ImageHashes::set(ScoreSize size, const std::string& group, const ScoreEntry
   hashes_[groupKey(size, group) + entryKey(entry)] = hash;
 }
 
-bool ImageHashes::has(ScoreSize size, const std::string& group) const {
-  const std::string key = groupKey(size, group);
-  // The map is sorted: keys with this beginning follow the place where the beginning alone would stand.
-  const auto found = hashes_.lower_bound(key);
-  return found != hashes_.end() && found->first.starts_with(key);
-}
-
 const std::string& ImageHashes::buildOf(ScoreSize size, const std::string& group) const {
   static const std::string unknown;
   const auto found = builds_.find(buildKey(size, group));

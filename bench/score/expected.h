@@ -36,7 +36,6 @@ class ImageHashes {
 
   std::optional<uint64_t> find(ScoreSize size, const std::string& group, const ScoreEntry& entry) const;
   void set(ScoreSize size, const std::string& group, const ScoreEntry& entry, uint64_t hash);
-  bool has(ScoreSize size, const std::string& group) const;
 
   // buildName() of the build that rendered the images of a size and group; empty where that is not known.
   const std::string& buildOf(ScoreSize size, const std::string& group) const;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <map>
 
 #include "bench/against/child_render.h"
 #include "bench/film_image.h"
@@ -15,8 +17,12 @@
 namespace wavecrest {
 namespace {
 
-// Of kScoreSlices: on one thread, after one that warms caches up; and in each process.
-constexpr uint64_t kThreadSlices = 3, kProcessSlices = 1;
+// Of kScoreSlices: those that are timed on one thread, between one that warms caches up and one whose events are
+// counted; and those of each process.
+constexpr uint64_t kThreadSlices = 6, kProcessSlices = 1;
+static_assert(kThreadSlices >= kVisitsForInterval,
+              "the range of fewer holds the median less often than kIntervalLevel");
+static_assert(kThreadSlices + 2 <= kScoreSlices);
 
 Scene loadEntry(const ScoreRequest& request, const ScoreEntry& entry) {
   return loadScene(request.sceneFile(entry.scene), {.filmSize = std::array{entry.width, entry.height}});
@@ -46,40 +52,7 @@ void renderOnThreads(const Scene& scene, const RenderSettings& settings, const I
   row.pathsPerSecond = estimateMedian(rates);
 }
 
-// Renders slices on one thread, for the speed of a core and the cost of each stage.
-void renderOnOneThread(const Scene& scene, RenderSettings settings, StageEventCounter& events, ScoreRow& row) {
-  settings.threads = 1;
-  settings.measureStages = true;
-  const auto session = Session::create(scene, settings);
-  SliceRenderer renderer(*session, row.entry.iterations / kScoreSlices);
-  // The first slice warms caches up; neither its time nor its events are used.
-  renderer.render();
-  events.take();
-  // Speed of the later slices.
-  std::vector<Slice> slices;
-  for (uint64_t i = 0; i < kThreadSlices; ++i) slices.push_back(renderer.render());
-  row.pathsPerCpuSecond = estimateMedian(valuesOf(slices, [](const Slice& s) { return s.pathsPerCpuSecond(); }));
-  row.facts = session->statistics();
-  // Stages: shares of time, bytes of columns, and hardware events per item.
-  const StageTraffic traffic(scene, settings);
-  const std::map<std::string, StageEvents> counted = events.take();
-  double paths = 0;
-  for (const Slice& slice : slices) paths += static_cast<double>(slice.paths);
-  for (const StageShare& share : stageShares({slices})) {
-    ScoredStage& stage = row.stages.emplace_back();
-    stage.share = share;
-    stage.bytesPerItem = traffic.bytesPerItem(share.name);
-    const auto found = counted.find(share.name);
-    if (found == counted.end() || share.itemsPerPath == 0) continue;
-    // Events are sums over all slices, so the divisor is the number of items in all slices.
-    for (size_t i = 0; i < kStageEvents; ++i) {
-      stage.eventsPerItem[i] = static_cast<double>(found->second[i]) / (share.itemsPerPath * paths);
-    }
-  }
-}
-
-ScoreRow measureRow(const ScoreRequest& request, const ScoreEntry& entry, const ExpectedImages& expected,
-                    StageEventCounter& events) {
+ScoreRow measureRow(const ScoreRequest& request, const ScoreEntry& entry, const ExpectedImages& expected) {
   const Scene scene = loadEntry(request, entry);
   const RenderSettings settings = scoreSettings(scene, entry, request.isa, request.threads);
   const Image reference = readImage(request.references / (entry.scene + ".exr")).image;
@@ -89,7 +62,7 @@ ScoreRow measureRow(const ScoreRequest& request, const ScoreEntry& entry, const 
   const auto judge = [&](const Image& film) { return judgeImage(film, request.size, request.isa, entry, expected); };
   renderOnThreads(scene, settings, reference, judge, row);
   // One thread.
-  renderOnOneThread(scene, settings, events, row);
+  measureOneThread(scene, settings, kHardwareEvents, row);
   // As many processes as threads, on one thread each, for one slice.
   const ChildRequest child{.scene = request.sceneFile(entry.scene),
                            .method = std::string(toString(entry.method)),
@@ -117,6 +90,40 @@ double geometricMean(const std::vector<ScoreRow>& rows, std::optional<Method> me
 }
 
 }  // namespace
+
+void measureOneThread(const Scene& scene, RenderSettings settings, const std::array<PerfEvent, kStageEvents>& events,
+                      ScoreRow& row) {
+  settings.threads = 1;
+  settings.measureStages = true;
+  const auto session = Session::create(scene, settings);
+  SliceRenderer renderer(*session, row.entry.iterations / kScoreSlices);
+  // The first slice warms caches up; its time is not used.
+  renderer.render();
+  // Speed of the later slices. A counter reads its events around every stage, which takes CPU time.
+  assert(stageObserver == nullptr);
+  std::vector<Slice> slices;
+  for (uint64_t i = 0; i < kThreadSlices; ++i) slices.push_back(renderer.render());
+  row.pathsPerCpuSecond = estimateMedian(valuesOf(slices, [](const Slice& s) { return s.pathsPerCpuSecond(); }));
+  row.facts = session->statistics();
+  // Events of one slice more, where they can be counted.
+  StageEventCounter counter(events);
+  Slice counted;
+  if (counter.refusal().empty()) counted = renderer.render();
+  const std::map<std::string, StageEvents> sums = counter.take();
+  // Stages: shares of time, bytes of columns, and events per item.
+  const StageTraffic traffic(scene, settings);
+  const std::vector<StageShare> shares = stageShares({slices});
+  for (size_t i = 0; i < shares.size(); ++i) {
+    ScoredStage& stage = row.stages.emplace_back();
+    stage.share = shares[i];
+    stage.bytesPerItem = traffic.bytesPerItem(shares[i].name);
+    const auto found = sums.find(shares[i].name);
+    if (found == sums.end() || counted.stages[i].items == 0) continue;
+    for (size_t k = 0; k < kStageEvents; ++k) {
+      stage.eventsPerItem[k] = static_cast<double>(found->second[k]) / static_cast<double>(counted.stages[i].items);
+    }
+  }
+}
 
 Image validatedImage(const Scene& scene, const ScoreEntry& entry, Isa isa, uint32_t threads) {
   const auto session = Session::create(scene, scoreSettings(scene, entry, isa, threads));
@@ -157,11 +164,10 @@ ScoreResult measureScore(const ScoreRequest& request, const ExpectedImages& expe
   result.isa = request.isa;
   result.threads = request.threads;
   result.ceilings = measureCeilings(request.isa);
-  StageEventCounter events;
-  result.eventsRefusal = events.refusal();
+  result.eventsRefusal = StageEventCounter().refusal();
   MachineWatch watch;
   for (const ScoreEntry& entry : request.entries) {
-    result.rows.push_back(measureRow(request, entry, expected, events));
+    result.rows.push_back(measureRow(request, entry, expected));
     progress(result.rows.back());
     watch.look();
   }

@@ -3,10 +3,11 @@
 // Each entry of the workload (workload.h) is rendered on all threads in slices. The image after the first slice must
 // have the committed hash (expected.h). Only a build that did not make the hash may round otherwise: its image must
 // look like the committed picture (picture.h). A build that renders something else gets no score. The relMSE against
-// the scene's committed reference after slices 1, 2, 4 and 8 says what the speed buys. One thread then renders some
-// slices again for the speed of a core and the stages, and as many processes as threads some slices each.
+// the scene's committed reference after slices 1, 2, 4 and 8 says what the speed buys. One thread then renders the
+// slices again for the speed of a core and the stages, and as many processes as threads a slice each.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -76,6 +77,11 @@ struct ScoreRequest {
 // progress: called after each entry with its row.
 ScoreResult measureScore(const ScoreRequest& request, const ExpectedImages& expected,
                          const std::function<void(const ScoreRow&)>& progress);
+
+// Renders the slices of the row's entry on one thread: its speed, the stages and the facts of the row. Events are
+// counted in a slice that is not timed; zeros where they cannot be. No StageEventCounter may live.
+void measureOneThread(const Scene& scene, RenderSettings settings, const std::array<PerfEvent, kStageEvents>& events,
+                      ScoreRow& row);
 
 // An entry's image after its first slice, rendered with any number of threads.
 Image validatedImage(const Scene& scene, const ScoreEntry& entry, Isa isa, uint32_t threads);

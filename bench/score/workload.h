@@ -16,8 +16,8 @@ namespace wavecrest {
 
 constexpr int kScoreVersion = 1;
 
-// small: four scenes without downloads on 256x192 pixels, a minute on two cores. medium: the nine scenes on 512x384,
-// minutes. large: the nine scenes on 1024x768, an hour.
+// small: four scenes without downloads on 256x192 pixels, a minute or two on two cores. medium: the nine scenes on
+// 512x384, minutes. large: the nine scenes on 1024x768, an hour.
 enum class ScoreSize { small, medium, large };
 constexpr std::array<std::string_view, 3> kScoreSizeNames{"small", "medium", "large"};
 

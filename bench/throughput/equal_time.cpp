@@ -26,7 +26,8 @@ ErrorAtTime errorNow(const Session& session, const NoisyReference& reference) {
 
 NoisyReference renderReference(const Scene& scene, const RenderSettings& settings, double seconds) {
   RenderSettings own = settings;
-  own.method = classifyPaths(scene).reference.method;
+  const ReferenceChoice choice = classifyPaths(scene).reference;
+  own.method = choice.method;
   own.sampler = bestSampler(own.method);
   Image halves[2];
   for (size_t i = 0; i < 2; ++i) {
@@ -36,7 +37,8 @@ NoisyReference renderReference(const Scene& scene, const RenderSettings& setting
     session->renderUntil(1, std::nullopt);  // a whole image, however long that takes
     halves[i] = filmImage(*session);
   }
-  NoisyReference reference{.method = own.method, .image = halves[0], .noise = 0, .seconds = seconds};
+  NoisyReference reference{
+      .method = own.method, .biased = choice.biased, .image = halves[0], .noise = 0, .seconds = seconds};
   for (size_t i = 0; i < reference.image.pixels.size(); ++i) {
     reference.image.pixels[i] = 0.5f * (halves[0].pixels[i] + halves[1].pixels[i]);
   }

@@ -14,6 +14,7 @@ namespace wavecrest {
 
 struct NoisyReference {
   Method method{};
+  bool biased = false;  // by merging (ReferenceChoice)
   Image image;
   double noise = 0;  // relMSE of the image against the unknown truth, expected
   double seconds = 0;

@@ -41,7 +41,7 @@ std::vector<std::unique_ptr<Session>> makeSessions(const Scene& scene, RenderSet
     rows.push_back({.precision = settings.precision,
                     .isa = settings.isa,
                     .specialization = sessions.back()->statistics().specialization,
-                    .pathsPerCpuSecond = {}});
+                    .pathsPerCpuSecondInterval = {}});
   };
   for (auto isa = availableIsas().rbegin(); isa != availableIsas().rend(); ++isa) {
     for (const Precision precision : {Precision::doubled, Precision::floating}) {
@@ -85,8 +85,9 @@ PolicyTable measurePolicies(const Scene& scene, const RenderSettings& settings, 
   const auto slices =
       renderInTurn(sessions, {.seconds = 0.5 * seconds, .fewestRounds = kFewestRounds, .mostRounds = kMostRounds});
   for (size_t i = 0; i < sessions.size(); ++i) {
-    table.rows[i].pathsPerCpuSecond =
-        estimateMedian(valuesOf(slices[i], [](const Slice& s) { return s.pathsPerCpuSecond(); }));
+    const std::vector<double> rates = valuesOf(slices[i], [](const Slice& s) { return s.pathsPerCpuSecond(); });
+    table.rows[i].pathsPerCpuSecond = median(rates);
+    if (rates.size() >= kVisitsForInterval) table.rows[i].pathsPerCpuSecondInterval = bootstrapMedian(rates);
     table.rows[i].bytesPerPath = sessions[i]->statistics().bytesPerPath;
   }
   return table;

@@ -5,6 +5,7 @@
 // follows from it (a path that takes another turn), not Monte Carlo noise.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "bench/statistics/medians.h"
@@ -16,8 +17,9 @@ struct PolicyRow {
   Precision precision{};
   Isa isa{};
   Specialization specialization{};
-  Estimate pathsPerCpuSecond;
-  double meanDifference = 0;   // (mean - mean of double) / mean of double: a bias
+  double pathsPerCpuSecond = 0;                       // median over rounds
+  std::optional<Interval> pathsPerCpuSecondInterval;  // of kVisitsForInterval rounds or more; fewer have none
+  double meanDifference = 0;                          // (mean - mean of double) / mean of double: a bias
   double pixelDifference = 0;  // root mean square over pixels, relative to that of double's image
   size_t bytesPerPath = 0;
 };

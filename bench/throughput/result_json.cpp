@@ -84,14 +84,16 @@ Json ratesJson(const RayRates& rates) {
           {"used_stage_rays_per_second", rates.usedStage}};
 }
 
-// Differences are relative to the image of double precision.
+// Differences are relative to the image of double precision. null: too few rounds for an interval.
 Json policiesJson(const PolicyTable& table) {
   Json rows = Json::array();
   for (const PolicyRow& row : table.rows) {
     Json json = {{"precision", enumeratorName(kPrecisionNames, row.precision)},
                  {"isa", std::string(toString(row.isa))},
                  {"specialization", enumeratorName(kSpecializationNames, row.specialization)}};
-    addEstimate(json, "paths_per_cpu_second", row.pathsPerCpuSecond);
+    json["paths_per_cpu_second"] = row.pathsPerCpuSecond;
+    const std::optional<Interval>& interval = row.pathsPerCpuSecondInterval;
+    json["paths_per_cpu_second_interval"] = interval ? intervalJson(*interval) : Json();
     json["mean_difference"] = row.meanDifference;
     json["pixel_difference"] = row.pixelDifference;
     json["bytes_per_path"] = row.bytesPerPath;
@@ -148,6 +150,7 @@ Json toJson(const SceneResult& result) {
           {"interval_level", kIntervalLevel},
           {"reference",
            {{"method", std::string(toString(result.reference.method))},
+            {"biased", result.reference.biased},
             {"seconds", result.reference.seconds},
             {"relmse", result.reference.noise}}},
           {"errors", errorsJson(result.errors)}};

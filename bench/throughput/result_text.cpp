@@ -1,5 +1,6 @@
 // Tables of a SceneResult for a terminal.
 #include "bench/enumerator_name.h"
+#include "bench/statistics/biased_reference.h"
 #include "bench/text_lines.h"
 #include "bench/throughput/bench_scene.h"
 #include "bench/throughput/doubts.h"
@@ -78,9 +79,13 @@ void addPolicies(Text& text, const PolicyTable& table) {
   line(text, "  {:<9} {:<8} {:<21} {:>16} {:>15} {:>16} {:>11}", "precision", "isa", "kernels", "M paths/s core",
        "mean vs double", "pixels vs double", "bytes/path");
   for (const PolicyRow& row : table.rows) {
+    // Without an interval the median stands alone.
+    const std::string paths = row.pathsPerCpuSecondInterval
+                                  ? rate({row.pathsPerCpuSecond, *row.pathsPerCpuSecondInterval})
+                                  : fmt::format("{:.3f}", millions(row.pathsPerCpuSecond));
     line(text, "  {:<9} {:<8} {:<21} {:>16} {:>15.1e} {:>16.1e} {:>11}", enumeratorName(kPrecisionNames, row.precision),
-         toString(row.isa), enumeratorName(kSpecializationNames, row.specialization), rate(row.pathsPerCpuSecond),
-         row.meanDifference, row.pixelDifference, row.bytesPerPath);
+         toString(row.isa), enumeratorName(kSpecializationNames, row.specialization), paths, row.meanDifference,
+         row.pixelDifference, row.bytesPerPath);
   }
 }
 
@@ -88,6 +93,7 @@ void addPolicies(Text& text, const PolicyTable& table) {
 void addErrors(Text& text, const SceneResult& result) {
   line(text, "\n  relMSE at equal time (reference: {}, {:.2g} s, its own noise {:.1e}, subtracted)",
        toString(result.reference.method), result.reference.seconds, result.reference.noise);
+  if (result.reference.biased) line(text, "  doubt: {}", referenceBlurs(result.reference.method));
   for (const ErrorRow& row : result.errors) {
     std::string points;
     for (const ErrorAtTime& at : row.points) {

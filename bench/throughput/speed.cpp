@@ -1,5 +1,7 @@
 #include "bench/throughput/speed.h"
 
+#include <algorithm>
+
 #include "bench/throughput/turns.h"
 
 namespace wavecrest {
@@ -99,19 +101,27 @@ std::vector<std::unique_ptr<Session>> SpeedMeasurement::makeSessions() const {
   return sessions;
 }
 
+void SpeedMeasurement::findIterations(double sliceSeconds) {
+  const auto sessions = makeSessions();
+  for (const auto& session : sessions) {
+    SliceRenderer renderer(*session);
+    renderer.fill(sliceSeconds);
+    iterations_.push_back(renderer.iterations());
+  }
+  // Later iterations of these methods are other work than earlier ones: a radius shrinks, a guide learns.
+  if (strategiesOf(settings_.method).merge || mayLearn(settings_)) {
+    std::fill(iterations_.begin(), iterations_.end(), iterations_.front());
+  }
+}
+
 void SpeedMeasurement::visit(double seconds) {
-  // Sessions of this visit, and slices of as many iterations as the first visit found.
+  if (iterations_.empty()) findIterations(seconds / static_cast<double>((kMostRounds + 1) * threads_.size()));
+  // Sessions of this visit. Their first slices fill caches and start threads; chains bootstrap.
   const auto sessions = makeSessions();
   std::vector<SliceRenderer> renderers;
-  const bool first = iterations_.empty();
   for (size_t i = 0; i < sessions.size(); ++i) {
-    renderers.emplace_back(*sessions[i], first ? 1 : iterations_[i]);
-    if (first) {
-      renderers.back().fill(seconds / static_cast<double>((kMostRounds + 1) * sessions.size()));
-      iterations_.push_back(renderers.back().iterations());
-    } else {
-      renderers.back().render();  // fills caches, starts threads; chains bootstrap
-    }
+    renderers.emplace_back(*sessions[i], iterations_[i]);
+    renderers.back().render();
   }
   // Slices of all thread counts in turn.
   auto slices = renderInTurn(renderers, {.seconds = seconds, .fewestRounds = 1, .mostRounds = kMostRounds},

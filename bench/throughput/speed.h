@@ -56,13 +56,15 @@ class SpeedMeasurement {
 
   // Renders with 1, 2, 4, ... and settings.threads threads in turn for about `seconds` of render time altogether. Each
   // visit has sessions of its own and renders the same iterations again, so that visits differ by the machine alone.
-  // The first one finds out how many iterations fill a slice.
+  // The first one finds out how many iterations fill a slice, in sessions that it throws away.
   void visit(double seconds);
   // After one visit at least.
   Speed speed() const;
 
  private:
   std::vector<std::unique_ptr<Session>> makeSessions() const;
+  // Sets iterations_.
+  void findIterations(double sliceSeconds);
 
   const Scene& scene_;
   RenderSettings settings_;

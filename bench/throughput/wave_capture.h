@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,14 @@
 #include "engine/plan/survival.h"
 
 namespace wavecrest {
+
+// The i-th index of a walk over all of `count` in large steps: any first few of them are spread over the whole.
+inline size_t spreadIndex(size_t i, size_t count) {
+  size_t step = count / 7 * 3 + 1;
+  // Steps that share a factor with the count would leave indices out.
+  while (std::gcd(step, count) != 1) ++step;
+  return i * step % count;
+}
 
 template <class S>
 class WaveCapture {
@@ -36,8 +45,7 @@ class WaveCapture {
 
   Wave<S> makeWave() const { return Wave<S>(settings_.waveSize, plan_.needs); }
   StageContext<S> context(uint32_t depth);
-  // The i-th index of a walk over all waves in large steps: any first few of them are spread over the film.
-  size_t waveFromAllOver(size_t i) const { return i * (waveCount() / 7 * 3 + 1) % waveCount(); }
+  size_t waveFromAllOver(size_t i) const { return spreadIndex(i, waveCount()); }
   size_t waveCount() const { return (pixels_.size() + pixelsPerWave() - 1) / pixelsPerWave(); }
   RenderPlan<S>& plan() { return plan_; }
   const StageCounters& counters() const { return counters_; }

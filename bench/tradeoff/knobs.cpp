@@ -42,13 +42,6 @@ void addArithmetic(Variants& variants, const RenderSettings& base) {
   }
 }
 
-// Intersectors, which find the same hits but for rounding.
-void addTracing(Variants& variants) {
-  for (const Accel accel : {Accel::small, Accel::bvh, Accel::embree}) {
-    variants.add("--accel", enumeratorName(kAccelNames, accel), true).accel = accel;
-  }
-}
-
 // What changes the paths. A depth limit is varied downwards only. Of the chains those of pssmlt alone play roulette.
 void addPaths(Variants& variants, const RenderSettings& base) {
   for (const uint32_t depth : {4u, 8u, 16u}) {
@@ -94,6 +87,15 @@ bool isSmall(const Scene& scene, const RenderSettings& settings) {
   return compileScene<float>(scene, settings.accel)->accel() == Accel::small;
 }
 
+// Intersectors, which find the same hits but for rounding. roulette: whether connections play it, which `small` never
+// does. small: whether the baseline's intersector is that one.
+void addTracing(Variants& variants, bool roulette, bool small) {
+  for (const Accel accel : {Accel::small, Accel::bvh, Accel::embree}) {
+    const bool samePaths = !roulette || (accel == Accel::small) == small;
+    variants.add("--accel", enumeratorName(kAccelNames, accel), samePaths).accel = accel;
+  }
+}
+
 // Shares of the brightness below which connections play roulette; 0 turns the roulette off.
 void addConnections(Variants& variants) {
   for (const double part : {0.0, 0.05, 0.8}) {
@@ -121,12 +123,13 @@ std::vector<Variant> variantsOf(const Scene& scene, const RenderSettings& base) 
   // chooseVariants expects the baseline first and double precision second.
   variants.add("baseline", enumeratorName(kPrecisionNames, base.precision), true);
   addArithmetic(variants, base);
-  addTracing(variants);
+  const bool hasRoulette = hasConnectionRoulette(base.method), small = hasRoulette && isSmall(scene, base);
+  addTracing(variants, hasRoulette && base.connectionRoulette != 0, small);
   addPaths(variants, base);
   // A box filter is the same in both modes.
   if (scene.film.filter != ReconstructionFilter::box) addFilter(variants, base);
   if (strategiesOf(base.method).merge) addMerging(variants, base, filmArea(scene.film).pixels.size());
-  if (hasConnectionRoulette(base.method) && !isSmall(scene, base)) addConnections(variants);
+  if (hasRoulette && !small) addConnections(variants);
   if (base.method == Method::mlt) addChains(variants, base);
   return variants.take();
 }

@@ -24,6 +24,7 @@ using Film = std::vector<float>;
 struct OneRender {
   Film film;
   double cpuSeconds = 0, paths = 0;
+  uint64_t iterations = 0;
   size_t bytes = 0;
   std::optional<double> joules;
   Accel accel{};
@@ -41,6 +42,7 @@ OneRender render(const Scene& scene, const RenderSettings& settings, std::option
   OneRender done{.film = session->film().resolve(),
                  .cpuSeconds = statistics.cpuSeconds,
                  .paths = static_cast<double>(statistics.paths),
+                 .iterations = statistics.iterations,
                  .bytes = statistics.memory.total(),
                  .joules = {},
                  .accel = statistics.accel};
@@ -51,7 +53,7 @@ OneRender render(const Scene& scene, const RenderSettings& settings, std::option
 
 // The image in double by the method that samples every class of paths, in parts of different seeds.
 struct TradeReference {
-  Method method{};
+  ReferenceChoice choice;
   Film mean;
   std::vector<BlockMeans> parts;
 };
@@ -59,8 +61,8 @@ struct TradeReference {
 TradeReference renderReference(const Scene& scene, const RenderSettings& base, double seconds) {
   RenderSettings settings = base;
   settings.precision = Precision::doubled;
-  TradeReference reference{.method = classifyPaths(scene).reference.method, .mean = {}, .parts = {}};
-  settings.method = reference.method;
+  TradeReference reference{.choice = classifyPaths(scene).reference, .mean = {}, .parts = {}};
+  settings.method = reference.choice.method;
   const uint32_t width = filmArea(scene.film).width;
   for (size_t i = 0; i < kReferenceSeeds; ++i) {
     settings.seed = kFirstReferenceSeed + i;
@@ -152,13 +154,14 @@ TradeResult measureTrade(const Scene& scene, const RenderSettings& base, const T
   // The double reference takes a fixed part of the time.
   MachineWatch watch;
   const TradeReference reference = renderReference(scene, base, kReferencePart * effort.seconds);
-  result.referenceMethod = reference.method;
+  result.referenceMethod = reference.choice.method;
+  result.referenceBiased = reference.choice.biased;
 
-  // All variants render the same number of iterations, as many as the rest of the time allows.
-  const OneRender first = render(scene, base, 1, {});
-  const double oneIteration = first.cpuSeconds / base.threads;
+  // All variants render the same iterations: as many as the baseline does in a share of the rest of the time, what it
+  // does once before the first included.
   const double share = (1 - kReferencePart) * effort.seconds / static_cast<double>(effort.seeds * variants.size());
-  result.iterations = std::max<uint64_t>(1, static_cast<uint64_t>(share / std::max(oneIteration, 1e-6)));
+  const OneRender first = render(scene, base, {}, share);
+  result.iterations = std::max<uint64_t>(1, first.iterations);
   std::vector<Measured> measured(variants.size());
   for (size_t i = 0; i < variants.size(); ++i) {
     // `small` tests every primitive of the scene for every ray: in a large mesh an iteration takes minutes.

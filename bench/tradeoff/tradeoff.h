@@ -47,7 +47,8 @@ struct TradeRow {
 struct TradeResult {
   std::string scene;
   Method method{};
-  Method referenceMethod{};  // of settings with paths of their own
+  Method referenceMethod{};      // of settings with paths of their own
+  bool referenceBiased = false;  // by merging (ReferenceChoice)
   uint32_t width = 0, height = 0, seeds = 0;
   uint64_t iterations = 0;     // of each image
   std::vector<TradeRow> rows;  // the baseline first
@@ -74,6 +75,8 @@ TradeResult measureTrade(const Scene& scene, const RenderSettings& base, const T
 
 std::string toText(const TradeResult& result);
 nlohmann::ordered_json toJson(const TradeResult& result);
+// Why its figures deserve doubt, a sentence each.
+std::vector<std::string> doubtsAbout(const TradeResult& result);
 // One page with a plot for each result: time to a relative error of 1 % against bias.
 std::string tradePage(const std::vector<TradeResult>& results);
 // What the baseline is, below the table.

@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/estimate_json.h"
-#include "bench/statistics/chains_mislead.h"
 #include "bench/tradeoff/tradeoff.h"
 
 namespace wavecrest {
@@ -39,8 +38,6 @@ Json rowJson(const TradeRow& row) {
 }  // namespace
 
 Json toJson(const TradeResult& result) {
-  std::vector<std::string> doubts = doubtsAbout(result.machine);
-  if (result.method == Method::mlt && result.seeds < kFewestChainRenders) doubts.emplace_back(kChainsMislead);
   Json rows = Json::array();
   for (const TradeRow& row : result.rows) rows.push_back(rowJson(row));
   return {{"scene", result.scene},
@@ -55,7 +52,7 @@ Json toJson(const TradeResult& result) {
           {"bias_told", tellsBias(result.seeds)},
           {"rows", rows},
           {"advice", adviceOf(result)},
-          {"doubts", doubts}};
+          {"doubts", doubtsAbout(result)}};
 }
 
 }  // namespace wavecrest

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/statistics/biased_reference.h"
 #include "bench/statistics/chains_mislead.h"
 #include "bench/text_lines.h"
 #include "bench/tradeoff/tradeoff.h"
@@ -66,11 +67,18 @@ std::string biasVerdictsInWords(const TradeResult& result) {
       100 * kNegligibleBias, verdictsOf(result.rows), 100 * kTradeLevel);
 }
 
+std::vector<std::string> doubtsAbout(const TradeResult& result) {
+  std::vector<std::string> doubts = doubtsAbout(result.machine);
+  if (result.referenceBiased) doubts.push_back(referenceBlurs(result.referenceMethod));
+  if (result.method == Method::mlt && result.seeds < kFewestChainRenders) doubts.emplace_back(kChainsMislead);
+  return doubts;
+}
+
 std::string toText(const TradeResult& result) {
   TextLines text;
   line(text, "{} {} {}x{}: {} iterations, {} seeds; reference: {} in double", result.scene, toString(result.method),
        result.width, result.height, result.iterations, result.seeds, toString(result.referenceMethod));
-  for (const std::string& doubt : doubtsAbout(result.machine)) line(text, "  doubt: {}", doubt);
+  for (const std::string& doubt : doubtsAbout(result)) line(text, "  doubt: {}", doubt);
   line(text, "  {:<28} {:>9} {:>13} {:>13} {:>10} {:>19} {:>19} {:>8}  {}", "setting", "M paths/s", "speed",
        "efficiency", "s to 1 %", "bias of the mean", "worst block", "MB", "");
   // A line for each setting. A setting that was refused has the reason in place of figures.
@@ -89,7 +97,6 @@ std::string toText(const TradeResult& result) {
   if (!energy) line(text, "  energy: this machine does not tell (powercap)");
   line(text, "  {}", biasVerdictsInWords(result));
   line(text, "  {}", kBaselineInWords);
-  if (result.method == Method::mlt && result.seeds < kFewestChainRenders) line(text, "  doubt: {}", kChainsMislead);
   line(text, "\n  {}", adviceOf(result));
   return fmt::to_string(text);
 }

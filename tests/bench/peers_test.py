@@ -1,5 +1,7 @@
 """Tests of bench/peers: its statistics on made-up noise, its conversion of scenes, and its table."""
 
+import contextlib
+import io
 import json
 import pathlib
 import sys
@@ -140,6 +142,28 @@ class Programs(unittest.TestCase):
         for threads, told in ((2, r"--threads 2 --max-depth"), (0, r"--seed 0 --max-depth")):
             with self.assertRaisesRegex(Failed, told):
                 Wavecrest(program, Job("scene.xml", "pt", (8, 8), 1, threads, -1, 5))
+
+    def test_merging_starts_with_the_radius_of_luxcore(self):
+        program = self.folder / "program"
+        program.write_text('#!/bin/sh\necho "$@" >&2\nexit 1\n', encoding="utf-8")
+        program.chmod(0o755)
+        for method, options, told in (
+            ("vcm", (), "--radius 0.001"),
+            ("ppm", (), "--radius 0.001"),
+            ("vcm", ("--radius", "0.003"), "--radius 0.003"),
+            ("bpt", (), None),
+        ):
+            with self.assertRaises(Failed) as failed:
+                Wavecrest(program, Job("scene.xml", method, (8, 8), 1, 1, -1, 5), options)
+            self.assertEqual(str(failed.exception).count("--radius"), 1 if told else 0)
+            self.assertIn(told or method, str(failed.exception))
+
+    def test_a_method_that_no_program_has_is_refused(self):
+        errors = io.StringIO()
+        with contextlib.redirect_stderr(errors), self.assertRaises(SystemExit) as ended:
+            self.main(ROOM, "--methods", "pt,vcm", "--programs", "mitsuba-llvm,cycles")
+        self.assertEqual(ended.exception.code, 2)
+        self.assertIn("--methods: none of mitsuba-llvm,cycles has 'vcm'", errors.getvalue())
 
     def test_the_folder_of_the_figures_is_made(self):
         figures = self.folder / "out" / "peers.json"

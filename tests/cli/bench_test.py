@@ -9,7 +9,7 @@ import unittest
 
 import jsonschema
 
-from harness import CHECK, DONE, INPUT, USAGE, WAVECREST, CommandTest, read_json
+from harness import CHECK, DONE, FAILURE, INPUT, USAGE, WAVECREST, CommandTest, read_json
 from results_schema import validate
 
 EXPORT = pathlib.Path(__file__).parents[2] / "bench" / "integrations" / "export_results.py"
@@ -391,6 +391,14 @@ class Modes(CommandTest):
                     self.assert_one_error_line(result, answer)
         typed = self.run_wavecrest("bench", "--score", "tiny", "--size", "8x8", expect=USAGE, variables=variables)
         self.assert_one_error_line(typed, "--score has sizes")
+
+    def test_folders_of_processes_are_checked_before_anything_is_measured(self):
+        for arguments in (["--score", "small", "--methods", "lt"], ["--scaling", "--methods", "pt", "--size", "16x16"]):
+            with self.subTest(arguments):
+                result = self.run_wavecrest("bench", "cornell-diffuse", *arguments, expect=FAILURE,
+                                            variables={"TMPDIR": "/proc"})  # fmt: skip
+                self.assert_one_error_line(result, r"/proc/wavecrest_\w+: ")
+                self.assertEqual(result.stdout, "")
 
     def test_files_are_checked_before_anything_is_measured(self):
         for arguments, answer in [

@@ -7,6 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <string>
 
 namespace wavecrest {
 namespace {
@@ -81,6 +82,40 @@ TEST(Stored, whatOnlyOneHasIsListed) {
   after["scenes"][0]["methods"].erase(1);
   const StoredComparison result = compareStored(resultOf(1), after, {});
   EXPECT_EQ(result.unmatched, std::vector<std::string>{"box vcm 4x3"});
+}
+
+// Of six visits each the least probability is 2 / 924: times 24 rows it is above 0.05.
+TEST(Stored, rowsTooManyForAnyVerdictAreSaidToBe) {
+  const auto withScenes = [](size_t count, double seconds) {
+    Json result = resultOf(seconds);
+    const Json scene = result["scenes"][0];
+    result["scenes"] = Json::array();
+    for (size_t i = 0; i < count; ++i) {
+      result["scenes"].push_back(scene);
+      result["scenes"].back()["scene"] = "box " + std::to_string(i);
+    }
+    return result;
+  };
+  for (const size_t scenes : {11u, 12u}) {  // of two rows each
+    const StoredComparison result = compareStored(withScenes(scenes, 1), withScenes(scenes, 2), {});
+    EXPECT_NEAR(result.leastProbability, 2 * static_cast<double>(scenes) * 2 / 924, 1e-9);
+    EXPECT_EQ(result.anySlower(), scenes == 11);
+    EXPECT_EQ(toText(result).find("No verdict is possible") == std::string::npos, scenes == 11);
+    EXPECT_EQ(toJson(result)["least_probability"], result.leastProbability);
+  }
+}
+
+TEST(Stored, scenesThatShareANameAreRefused) {
+  Json twice = resultOf(1);
+  twice["scenes"].push_back(twice["scenes"][0]);
+  EXPECT_THROW(compareStored(twice, twice, {}), StoredMismatch);
+  twice["scenes"][1]["width"] = 8;
+  EXPECT_EQ(compareStored(twice, twice, {}).rows.size(), 4u) << "another size is another row";
+  Json before = resultOf(1), edited = resultOf(1);
+  before["scenes"][0]["scene_hash"] = "0000000000000001";
+  edited["scenes"][0]["scene_hash"] = "0000000000000002";
+  EXPECT_THROW(compareStored(before, edited, {}), StoredMismatch);
+  EXPECT_EQ(compareStored(before, before, {}).rows.size(), 2u);
 }
 
 TEST(Stored, otherMachinesAndOtherFilesAreRefused) {

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <optional>
+#include <string>
+
 namespace wavecrest {
 namespace {
 
@@ -23,6 +27,21 @@ TEST(CpuMax, isAQuotaOverItsPeriodOrNone) {
   EXPECT_DOUBLE_EQ(parseCpuMax("150000 100000\n").value(), 1.5);
   EXPECT_FALSE(parseCpuMax("max 100000\n"));
   EXPECT_FALSE(parseCpuMax(""));
+}
+
+TEST(CpuMax, isTheLeastOfAGroupAndItsParents) {
+  std::map<std::string, std::string> files = {{"/sys/fs/cgroup/user.slice/job.scope/cpu.max", "400000 100000\n"},
+                                              {"/sys/fs/cgroup/user.slice/cpu.max", "150000 100000\n"},
+                                              {"/sys/fs/cgroup/cpu.max", "max 100000\n"}};
+  const auto limitOf = [&](const char* groups) {
+    return leastCpuMax(groups, [&](const std::string& path) { return files[path]; });
+  };
+  EXPECT_EQ(limitOf("12:cpu:/old\n0::/user.slice/job.scope\n"), 1.5);
+  files["/sys/fs/cgroup/user.slice/job.scope/cpu.max"] = "50000 100000\n";
+  EXPECT_EQ(limitOf("0::/user.slice/job.scope\n"), 0.5);
+  for (const char* groups : {"", "0::/\n", "12:cpu:/user.slice\n"}) EXPECT_EQ(limitOf(groups), std::nullopt) << groups;
+  files["/sys/fs/cgroup/cpu.max"] = "200000 100000\n";
+  EXPECT_EQ(limitOf("0::/\n"), 2.0) << "a container's own group";
 }
 
 TEST(ChosenWord, isTheOneInBrackets) {

@@ -1,8 +1,11 @@
 // When recommend has a verdict, and what it says where it has none.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "bench/recommend/duration_words.h"
 #include "bench/recommend/recommend.h"
@@ -86,6 +89,20 @@ TEST(Pilots, takeTheSamplerThatRenderTakes) {
     const RenderSettings own = pilotSettings({}, method);
     EXPECT_EQ(own.method, method);
     EXPECT_EQ(own.sampler == SamplerKind::sobol, method == Method::pt || method == Method::vcm) << toString(method);
+  }
+}
+
+// cornell-spheres has paths that only merging samples.
+TEST(Recommend, doubtsAReferenceThatBlurs) {
+  RenderSettings settings;
+  settings.isa = bestIsa();
+  takeProgramDefaults(settings);
+  for (const auto& [name, blurs] : {std::pair("cornell-spheres", true), std::pair("cornell-diffuse", false)}) {
+    const Scene scene = loadScene(findScene(name), {.filmSize = std::array{32u, 24u}});
+    const RenderSettings own = referenceSettings(settings, classifyPaths(scene).reference);
+    EXPECT_EQ(own.radius, blurs ? std::optional(kFixedRadius) : std::nullopt) << name;
+    const Recommendation told = recommend(scene, settings, {.seconds = 0.1, .methods = {Method::pt}});
+    EXPECT_EQ(toText(told).find("Doubt: the reference is by vcm, which blurs.") != std::string::npos, blurs) << name;
   }
 }
 

@@ -41,8 +41,6 @@ TEST(ImageHashes, areThoseThatWereWritten) {
   ScoreEntry other = kEntry;
   other.method = Method::pt;
   EXPECT_EQ(read.find(ScoreSize::small, "avx2", other), std::nullopt);
-  EXPECT_TRUE(read.has(ScoreSize::small, "avx2"));
-  EXPECT_FALSE(read.has(ScoreSize::small, "avx"));
   EXPECT_EQ(read.buildOf(ScoreSize::small, "avx2"), "0.1.0, GCC 12");
   EXPECT_EQ(read.buildOf(ScoreSize::large, "avx512"), "");
 }

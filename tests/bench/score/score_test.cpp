@@ -2,10 +2,14 @@
 #include "bench/score/score.h"
 
 #include <gtest/gtest.h>
+#include <linux/perf_event.h>
 
+#include <array>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
+
+#include "tests/bench/small_box.h"
 
 namespace wavecrest {
 namespace {
@@ -46,6 +50,32 @@ TEST(Score, isValidOnlyIfEveryImageIs) {
     EXPECT_FALSE(result.doubts().empty());
     EXPECT_FALSE(toJson(result).at("valid").get<bool>());
   }
+}
+
+// Counted in place of cycles: nanoseconds of the thread's CPU time, which Linux counts itself, and nothing.
+constexpr PerfEvent kTime{PERF_TYPE_SOFTWARE, PERF_COUNT_SW_TASK_CLOCK};
+constexpr PerfEvent kNothing{PERF_TYPE_SOFTWARE, PERF_COUNT_SW_DUMMY};
+
+TEST(Score, countsEventsInASliceThatIsNotTimed) {
+  const std::array<PerfEvent, kStageEvents> events{kTime, kNothing, kNothing};
+  const std::string refusal = StageEventCounter(events).refusal();
+  if (!refusal.empty()) GTEST_SKIP() << refusal;
+  const Scene scene = smallBox(64, 48);
+  ScoreRow row;
+  row.entry = ScoreEntry{
+      .scene = "cornell-diffuse", .method = Method::pt, .width = 64, .height = 48, .iterations = 8 * kScoreSlices};
+  measureOneThread(scene, scoreSettings(scene, row.entry, bestIsa(), 1), events, row);
+  EXPECT_EQ(stageObserver, nullptr) << "later renders are timed without a counter";
+  double counted = 0, timed = 0;
+  for (const ScoredStage& stage : row.stages) {
+    counted += stage.eventsPerItem[0] * stage.share.itemsPerPath;
+    timed += stage.share.nsPerPath.value;
+    EXPECT_EQ(stage.eventsPerItem[1], 0) << stage.share.name;
+  }
+  // Both are nanoseconds per path. Events of all slices over the items of one would be eight times as many.
+  EXPECT_GT(counted, 0.3 * timed);
+  EXPECT_LT(counted, 3 * timed);
+  EXPECT_LT(row.pathsPerCpuSecond.interval.low, row.pathsPerCpuSecond.interval.high);
 }
 
 }  // namespace

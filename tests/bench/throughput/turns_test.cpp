@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "bench/throughput/speed.h"
 #include "tests/bench/small_box.h"
 
@@ -54,6 +56,30 @@ TEST(Turns, itemsOfAPathAreTheSameInEveryMeasurement) {
     EXPECT_NEAR(a.stages[i].itemsPerPath, b.stages[i].itemsPerPath, 0.015 * b.stages[i].itemsPerPath)
         << a.stages[i].name;
   }
+}
+
+TEST(Turns, visitsRenderTheSameIterations) {
+  const Scene scene = smallBox(24, 16);
+  SpeedMeasurement measurement(scene, measured(Method::pt));
+  for (int visit = 0; visit < 2; ++visit) measurement.visit(0.05);
+  const Speed speed = measurement.speed();
+  const VisitSlices& slices = speed.scaling.front().slices;
+  ASSERT_EQ(slices.size(), 2u);
+  for (size_t k = 0; k < std::min(slices[0].size(), slices[1].size()); ++k) {
+    EXPECT_EQ(slices[0][k].rays(), slices[1][k].rays()) << k;
+  }
+}
+
+// The radius shrinks, so that slices of other iterations are other work.
+TEST(Turns, slicesOfAMergingMethodAreTheSameWorkOnAnyNumberOfThreads) {
+  const Scene scene = smallBox(24, 16);
+  RenderSettings settings = measured(Method::vcm);
+  settings.threads = 2;
+  SpeedMeasurement measurement(scene, settings);
+  measurement.visit(0.3);
+  const Speed speed = measurement.speed();
+  ASSERT_EQ(speed.scaling.size(), 2u);
+  EXPECT_EQ(speed.scaling[0].slices[0][0].paths, speed.scaling[1].slices[0][0].paths);
 }
 
 }  // namespace

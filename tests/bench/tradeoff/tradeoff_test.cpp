@@ -56,6 +56,16 @@ TEST(Knobs, leaveOutConnectionRouletteWhereAllConnectionsAreJoined) {
   }
 }
 
+TEST(Knobs, intersectorsThatJoinOtherConnectionsTraceOtherPaths) {
+  const Scene scene = smallBox(48, 32);
+  for (const Method method : {Method::pt, Method::bpt, Method::vcm}) {
+    for (const Variant& variant : variantsOf(scene, settingsOf(method))) {
+      if (variant.knob != "--accel") continue;
+      EXPECT_EQ(variant.samePaths, method == Method::pt || variant.value == "small") << toString(method);
+    }
+  }
+}
+
 TEST(Knobs, canBeChosenByNameAndAreComparedWithTheSame) {
   const auto all = variantsOf(smallBox(48, 32), settingsOf(Method::pt));
   const auto chosen = [&](const std::vector<std::string>& words) {
@@ -129,6 +139,14 @@ TEST(Advice, saysThatErrorsOfFewChainRendersMislead) {
   EXPECT_EQ(toText(result).find("errors of mlt"), std::string::npos);
   result.method = Method::mlt;
   EXPECT_NE(toText(result).find("doubt: errors of mlt from few renders are too small"), std::string::npos);
+}
+
+TEST(Advice, saysThatAReferenceBlurs) {
+  TradeResult result = tableWith({}, false, 6);
+  result.referenceMethod = Method::vcm;
+  EXPECT_EQ(toText(result).find("which blurs"), std::string::npos);
+  result.referenceBiased = true;
+  EXPECT_NE(toText(result).find("doubt: the reference is by vcm, which blurs"), std::string::npos);
 }
 
 // Two images by Sobol points may be alike by chance.
