@@ -18,6 +18,7 @@
 #include "cli/file_check.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/render_messages.h"
 #include "cli/scene_options.h"
 #include "engine/inspect/path_classes.h"
 #include "engine/plan/render_settings.h"
@@ -178,6 +179,7 @@ int runReference(const ReferenceOptions& options) {
   const std::unique_ptr<const Reference> other = otherReference(options, scene);
   noteLine(kind, {{"method", toString(method.method)}, {"reason", method.reason}},
            fmt::format("{} by {}: {}", scene.name, toString(method.method), method.reason));
+  warnOfLimits(kind, settings);
 
   // SIGUSR1 interrupts one half. The request waits in saveNow until both halves have the same number of iterations, as
   // only then can the reference be saved.

@@ -1,13 +1,13 @@
 // wavecrest render: one scene, one method, images and statistics out.
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "bench/until/longer_time.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/interrupt.h"
@@ -29,42 +29,6 @@
 
 namespace wavecrest {
 namespace {
-
-// The share of a render that --part asks for. Throws UsageError where there is none.
-RenderSettings settingsOfPart(const RenderOptions& options, const RenderSettings& settings) {
-  const auto [part, parts] = parsePart("--part", options.part);
-  if (options.checkpoint.file.empty()) {
-    throw UsageError("--part: its result is a checkpoint; expected --checkpoint FILE");
-  }
-  if (!settings.iterations) throw UsageError("--part: a part of how many iterations is not known; expected --spp N");
-  const bool mlt = settings.method == Method::mlt;
-  if (mlt && !options.outputs.empty()) {
-    throw UsageError("--part: some of the chains of mlt make no image; expected no -o, but `wavecrest merge -o`");
-  }
-  if (mayLearn(settings)) {
-    throw UsageError(
-        "--part: gpt draws directions by what all earlier iterations have learned, and a part has only its "
-        "own; expected another method, or --guide off");
-  }
-  const uint64_t most = mlt ? settings.metropolis.chains : *settings.iterations;
-  if (parts > most) {
-    throw UsageError(fmt::format("--part {}: there are {} {}; expected no more parts than that", options.part, most,
-                                 mlt ? "chains" : "iterations"));
-  }
-  return settingsOfShare(settings, part - 1, parts);
-}
-
-// The engine's settings: what the options leave open comes from the scene and the machine. Stages are timed only where
-// statistics are written.
-RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
-  RenderSettings settings = renderSettings(options, scene);
-  // Only long runs of Sobol points are independent, and an error is known after eight. A goal would be far behind.
-  if (options.until.relativeError > 0 && options.sampler == "auto") settings.sampler = SamplerKind::independent;
-  // A goal ends the render, not the scene's number of samples.
-  if (options.spp == 0 && options.until.any()) settings.iterations.reset();
-  settings.measureStages = !options.stats.empty();
-  return options.part.empty() ? settings : settingsOfPart(options, settings);
-}
 
 // What `make` makes: a session or a plan. A memory budget that is too small is a UsageError of --memory.
 template <class Make>
@@ -88,18 +52,6 @@ UntilGoal untilGoal(const RenderOptions& options, const RenderSettings& settings
         "expected one of them");
   }
   return {options.until, settings, film};
-}
-
-// Before a render: the memory plan, with --memory and for photon maps, whose size depends on the number of light paths,
-// and warnings of settings. spreads: the film.
-void tellPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, ProgressKind kind,
-              const MemoryPlan& memory, bool spreads) {
-  if (settings.memoryBytes || memory.use.photonMap > 0) showMemory(kind, memory);
-  warnOfLimits(kind, settings);
-  warnOfFilter(kind, scene, settings, spreads);
-  if (options.until.relativeError > 0 && strategiesOf(settings.method).merge) {
-    warn(kind, "--until-relative-error leaves out the bias of merging, which falls with --radius and with time");
-  }
 }
 
 enum class Ending { complete, stopped };
@@ -212,18 +164,24 @@ void RenderRun::load() {
   checkOutputs(names_, scene_.files, options_.until.reference);
   loadSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const bool measures = settings_.measureStages;
-  settings_ = ranks_.share(resolved(options_, scene_), scene_, kind_);
+  settings_ = ranks_.share(settingsOfRender(options_, scene_), scene_, kind_);
   settings_.measureStages = measures;
   if (earlier_) earlier_->cutAlike(settings_);
   if (options_.pin) settings_.placement = pinnedPlacement(settings_.threads, kind_);
-  if (options_.until.any()) until_.emplace(untilGoal(options_, settings_, filmOutline(scene_.film)));
+  if (options_.until.any()) {
+    const FilmArea film = filmOutline(scene_.film);
+    until_.emplace(untilGoal(options_, settings_, film));
+    until_->reserveMemory(settings_, film);
+  }
 }
 
 // Makes the session, connects viewers and outputs, and goes on from the checkpoint.
 void RenderRun::build() {
   session_ = withinMemory([&] { return Session::create(scene_, settings_); });
-  tellPlan(options_, scene_, settings_, kind_, session_->memoryPlan(), session_->film().spreads());
-  showChoice(kind_, settings_.method, session_->statistics().choice);
+  const RenderStatistics statistics = session_->statistics();
+  tellPlan(options_, scene_, settings_, kind_, statistics.renderedBy(settings_.method), session_->memoryPlan(),
+           session_->film().spreads());
+  showChoice(kind_, settings_.method, statistics.choice);
   live_.emplace(options_.live, scene_, settings_, kind_, session_);
   outputs_.emplace(names_, scene_, settings_, loadSeconds_, kind_);
   goOn(earlier_, options_.checkpoint, scene_, settings_, kind_, *session_, *outputs_);
@@ -249,7 +207,7 @@ int RenderRun::runTogether() {
   if (options_.dryRun) {
     ranks_.together([this] {
       const DryPlan plan = withinMemory([&] { return planWithoutSession(scene_, settings_); });
-      tellPlan(options_, scene_, settings_, kind_, plan.memory, plan.spreads);
+      tellPlan(options_, scene_, settings_, kind_, plan.method, plan.memory, plan.spreads);
       if (ranks_.first()) showPlan(options_, scene_, settings_, plan);
     });
     return ranks_.leave(kExitDone);
@@ -295,13 +253,11 @@ Ending RenderRun::render() {
   // From here on signals interrupt the session.
   guard_->watch(&live_->interruptible(*session_));
   std::optional<uint64_t> goalPaths;
-  if (settings_.iterations) {
+  if (const std::optional<uint64_t> iterations = settings_.jointIterations()) {
     // A part of an mlt render has some of the chains, in all iterations. Under a launcher, progress counts the paths of
     // all processes.
     const uint64_t parts = settings_.method == Method::mlt && !ranks_.several() ? settings_.share.parts : 1;
-    const uint64_t iterations =
-        ranks_.several() ? settings_.share.iterations.value_or(*settings_.iterations) : *settings_.iterations;
-    goalPaths = pathsOf(iterations, session_->film().area()) / parts;
+    goalPaths = pathsOf(*iterations, session_->film().area()) / parts;
   }
   {
     // Progress lives in a block of its own: its end completes the line on the terminal.
@@ -390,17 +346,12 @@ int RenderRun::endWithoutImage(Ending ending, const RenderStatistics& statistics
     tell("wavecrest: interrupted {}; no {} was written", when, what);
     return kExitInterrupted;
   }
-  // A pass takes about as much longer as pixels are missing.
-  std::string longer = "a longer time";
-  if (statistics.choice) longer = fmt::format("more than the {:.2g} s that trials take", statistics.choice->seconds);
-  if (statistics.paths > 0) {
-    const double passes =
-        static_cast<double>(statistics.paths) / static_cast<double>(session_->film().area().pixels.size());
-    longer = fmt::format("more than {:.1g} s", statistics.renderSeconds / std::min(passes, 1.0));
-  }
-  tell("wavecrest: error: --time: {:.2g} s ended {}; no {} was written; expected {}{}{}", statistics.renderSeconds,
-       when, what, longer, options_.checkpoint.file.empty() ? "" : " with --resume",
-       statistics.paths == 0 ? "" : ", or --partial");
+  const double passes =
+      static_cast<double>(statistics.paths) / static_cast<double>(session_->film().area().pixels.size());
+  tell("wavecrest: error: --time: {} s ended {}; no {} was written; expected {}{}{}",
+       roundedUpSeconds(statistics.renderSeconds), when, what,
+       longerTime(statistics.renderSeconds, statistics.choice ? statistics.choice->seconds : 0, passes),
+       options_.checkpoint.file.empty() ? "" : " with --resume", statistics.paths == 0 ? "" : ", or --partial");
   return kExitInput;
 }
 

@@ -42,6 +42,15 @@ nlohmann::ordered_json toJson(const MemoryPlan& plan) {
   return {{"memory", memory}};
 }
 
+// Where samples add to one pixel each although --filter-mode asks to spread them, because the scene's filter is too
+// wide.
+void warnOfFilter(ProgressKind kind, const Scene& scene, const RenderSettings& settings, bool spreads) {
+  if (scene.film.filter == ReconstructionFilter::box || settings.filterMode != FilterMode::spread || spreads) return;
+  if (settings.method == Method::mlt) return;  // chains choose one pixel each
+  warn(kind,
+       fmt::format("the scene's filter reaches further than {} pixels: samples add to one pixel each", kWidestSpread));
+}
+
 }  // namespace
 
 void warnOfLimits(ProgressKind kind, const RenderSettings& settings) {
@@ -53,23 +62,20 @@ void warnOfLimits(ProgressKind kind, const RenderSettings& settings) {
   }
   // The merge radius, relative to the scene's radius.
   if (!strategiesOf(settings.method).merge || !settings.radius) return;
-  const double radius = *settings.radius;
-  if (radius < kSmallestRadius) {
-    warn(kind, fmt::format("--radius {:g} is below what positions resolve; {:g} is used", radius, kSmallestRadius));
-  } else if (radius >= 0.5) {
-    warn(kind, fmt::format("--radius {:g} blurs over the whole scene; expected a small part of its radius", radius));
+  if (*settings.radius >= 0.5) {
+    warn(kind, fmt::format("--radius {:g} blurs over the whole scene; expected a small part of its radius",
+                           *settings.radius));
   }
 }
 
-void warnOfFilter(ProgressKind kind, const Scene& scene, const RenderSettings& settings, bool spreads) {
-  if (scene.film.filter == ReconstructionFilter::box || settings.filterMode != FilterMode::spread || spreads) return;
-  if (settings.method == Method::mlt) return;  // chains choose one pixel each
-  warn(kind,
-       fmt::format("the scene's filter reaches further than {} pixels: samples add to one pixel each", kWidestSpread));
-}
-
-void showMemory(ProgressKind kind, const MemoryPlan& plan) {
-  noteLine(kind, toJson(plan), "memory: " + describe(plan));
+void tellPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, ProgressKind kind,
+              Method method, const MemoryPlan& memory, bool spreads) {
+  if (settings.memoryBytes || memory.use.photonMap > 0) noteLine(kind, toJson(memory), "memory: " + describe(memory));
+  warnOfLimits(kind, settings);
+  warnOfFilter(kind, scene, settings, spreads);
+  if (options.until.relativeError > 0 && strategiesOf(method).merge) {
+    warn(kind, "--until-relative-error leaves out the bias of merging, which falls with --radius and with time");
+  }
 }
 
 void showChoice(ProgressKind kind, Method method, const std::optional<MethodChoice>& choice) {
@@ -95,7 +101,9 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
              kSpecializationNames[static_cast<size_t>(plan.specialization)], toString(plan.isa),
              kAccelNames[static_cast<size_t>(plan.accel)], settings.threads);
   std::vector<std::string> ends;
-  if (settings.iterations) ends.push_back(fmt::format("after {} spp", *settings.iterations));
+  if (const std::optional<uint64_t> iterations = settings.jointIterations()) {
+    ends.push_back(fmt::format("after {} spp", *iterations));
+  }
   if (settings.seconds) ends.push_back(fmt::format("after {:g} s", *settings.seconds));
   if (options.until.ssim > 0) ends.push_back(fmt::format("once SSIM is {:g}", options.until.ssim));
   if (options.until.relativeError > 0) {
@@ -107,7 +115,12 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
         "merging  first within {:.4g} of the scene's radius: {:.4g} in its units, {:.2f} pixels, {:.2f} photons\n",
         radius->first, radius->at(0), radius->inPixels(), radius->photonsPerSearch());
   }
-  fmt::print("memory   {}\n", describe(plan.memory));
+  fmt::print("memory   {}{}\n", describe(plan.memory),
+             plan.method == settings.method ? "" : fmt::format("; of {}, if trials choose it", toString(plan.method)));
+  if (options.until.relativeError > 0) {
+    fmt::print("         and {:.1f} MB for the films that tell the error\n",
+               static_cast<double>(FilmErrorWatch::bytesFor(size_t{width} * height)) / 1e6);
+  }
   // Memory that writing an EXR takes besides the plan.
   const auto isExr = [](const std::string& output) { return output.ends_with(".exr"); };
   if (std::any_of(options.outputs.begin(), options.outputs.end(), isExr)) {

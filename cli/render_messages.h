@@ -8,13 +8,12 @@
 
 namespace wavecrest {
 
-// Before the render: of settings that it cannot follow or that blur the image.
+// Of settings that the render cannot follow or that blur the image.
 void warnOfLimits(ProgressKind kind, const RenderSettings& settings);
-// Where samples add to one pixel each although --filter-mode asks to spread them, because the scene's filter is too
-// wide.
-void warnOfFilter(ProgressKind kind, const Scene& scene, const RenderSettings& settings, bool spreads);
-// The memory plan, in one line.
-void showMemory(ProgressKind kind, const MemoryPlan& plan);
+// Before the render: the memory plan, with --memory and for photon maps, whose size depends on the number of light
+// paths, and warnings of settings. method: the one that renders, as far as it is known. spreads: the film.
+void tellPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, ProgressKind kind,
+              Method method, const MemoryPlan& memory, bool spreads);
 // One line: which method the trials of `method` (gpt or evcm) have chosen, and the work of each candidate. Prints
 // nothing if there were no trials.
 void showChoice(ProgressKind kind, Method method, const std::optional<MethodChoice>& choice);

@@ -1,7 +1,11 @@
 #include "cli/render_options.h"
 
+#include <fmt/core.h>
+
+#include "cli/commands.h"
 #include "engine/methods/method_list.h"
 #include "library/option_ranges.h"
+#include "library/option_values.h"
 
 namespace wavecrest {
 namespace {
@@ -48,6 +52,30 @@ void addMethodOptions(const Command& command, RenderOptions& options) {
            "steps before chains start anew; default: such that chains make 16 mutations for each bootstrap sample")
       .between(kRestartRange);
   command.addFlag("--no-direct-pass", options.noDirectPass, "mmlt and pathspace: chains render direct light too");
+}
+
+// The share of a render that --part asks for. Throws UsageError where there is none.
+RenderSettings settingsOfPart(const RenderOptions& options, const RenderSettings& settings) {
+  const auto [part, parts] = parsePart("--part", options.part);
+  if (options.checkpoint.file.empty()) {
+    throw UsageError("--part: its result is a checkpoint; expected --checkpoint FILE");
+  }
+  if (!settings.iterations) throw UsageError("--part: a part of how many iterations is not known; expected --spp N");
+  const bool mlt = settings.method == Method::mlt;
+  if (mlt && !options.outputs.empty()) {
+    throw UsageError("--part: some of the chains of mlt make no image; expected no -o, but `wavecrest merge -o`");
+  }
+  if (mayLearn(settings)) {
+    throw UsageError(
+        "--part: gpt draws directions by what all earlier iterations have learned, and a part has only its "
+        "own; expected another method, or --guide off");
+  }
+  const uint64_t most = mlt ? settings.metropolis.chains : *settings.iterations;
+  if (parts > most) {
+    throw UsageError(fmt::format("--part {}: there are {} {}; expected no more parts than that", options.part, most,
+                                 mlt ? "chains" : "iterations"));
+  }
+  return settingsOfShare(settings, part - 1, parts);
 }
 
 }  // namespace
@@ -110,6 +138,16 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command.addFlag("--dry-run", options.dryRun, "print plan, memory and outputs, and render nothing");
   command.add("--progress", options.progress, "auto, bar, jsonl or none").showDefault();
   command.addFlag("--quiet", options.quiet, "neither progress nor notes on stderr; --stats has the notes");
+}
+
+RenderSettings settingsOfRender(const RenderOptions& options, const Scene& scene) {
+  RenderSettings settings = renderSettings(options, scene);
+  // Only long runs of Sobol points are independent, and an error is known after eight. A goal would be far behind.
+  if (options.until.relativeError > 0 && options.sampler == "auto") settings.sampler = SamplerKind::independent;
+  // A goal ends the render, not the scene's number of samples.
+  if (options.spp == 0 && options.until.any()) settings.iterations.reset();
+  settings.measureStages = !options.stats.empty();
+  return options.part.empty() ? settings : settingsOfPart(options, settings);
 }
 
 }  // namespace wavecrest

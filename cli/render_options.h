@@ -1,4 +1,4 @@
-// The options of `wavecrest render`.
+// The options of `wavecrest render`, and the engine's settings that follow from them.
 #pragma once
 
 #include <string>
@@ -27,5 +27,9 @@ struct RenderOptions : api::RenderOptions {
 
 // Adds all of them to the command, which keeps references to `options`.
 void addRenderOptions(const Command& command, RenderOptions& options);
+
+// The engine's settings: what the options leave open comes from the scene and the machine. Stages are timed only where
+// statistics are written. Throws UsageError for options that do not go together.
+RenderSettings settingsOfRender(const RenderOptions& options, const Scene& scene);
 
 }  // namespace wavecrest

@@ -53,6 +53,22 @@ UntilGoal::UntilGoal(const UntilRequest& request, const RenderSettings& settings
   if (const std::string reason = whyNoFilmError(settings); !reason.empty()) {
     throw UsageError(fmt::format("--until-relative-error: {}; expected another method", reason));
   }
+  if (film.size() < kFewestPixelsOfError) {
+    throw UsageError(fmt::format(
+        "--until-relative-error: a film of {}x{} is too small to tell its error; expected {} pixels or more",
+        film.width, film.height, kFewestPixelsOfError));
+  }
+}
+
+void UntilGoal::reserveMemory(RenderSettings& settings, const FilmArea& film) const {
+  if (!settings.memoryBytes || reference_) return;
+  const uint64_t bytes = FilmErrorWatch::bytesFor(film.size());
+  if (*settings.memoryBytes <= bytes) {
+    throw UsageError(
+        fmt::format("--memory: the films that --until-relative-error compares take {:.1f} MB; expected more than that",
+                    static_cast<double>(bytes) / 1e6));
+  }
+  *settings.memoryBytes -= bytes;
 }
 
 nlohmann::ordered_json UntilGoal::render(Session& session, const RenderSettings& settings) {

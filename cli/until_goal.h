@@ -22,6 +22,8 @@ class UntilGoal {
   // Throws UsageError where options do not fit together, ImageError for a reference that cannot be read, InputError for
   // one of another size than the film's.
   UntilGoal(const UntilRequest& request, const RenderSettings& settings, const FilmArea& film);
+  // Takes the memory of an error goal off the budget. Throws UsageError where nothing is left.
+  void reserveMemory(RenderSettings& settings, const FilmArea& film) const;
 
   // Renders to the goal, to the settings' end or to an interrupt. Returns what was reached, for stats. May be called
   // again for the same session.

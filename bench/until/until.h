@@ -35,10 +35,13 @@ struct ErrorNow {
 };
 
 // The relative RMSE of a session's film against its expectation (film_error.h), watched from the first iteration on.
-// Takes the memory of up to 17 films. Merging methods have expectations that their radius blurs: that bias is no part
-// of the error.
+// Merging methods have expectations that their radius blurs: that bias is no part of the error.
 class FilmErrorWatch {
  public:
+  // Memory that it takes for a film of so many pixels, besides the film that it looks at (MemoryUse::image): the slices
+  // and the film before, or one slice less and what the estimate makes of them.
+  static constexpr size_t bytesFor(size_t pixels) { return (2 * kFewestSlices + 1) * pixels * 3 * sizeof(float); }
+
   // Goes on to the goal, to the iterations or the time of the settings, or to an interrupt; without either of them also
   // to a film that is found black. May be called again, for the same session. Settings must be such that whyNoFilmError
   // has nothing to say.
@@ -59,6 +62,9 @@ inline uint64_t independentRun(SamplerKind sampler, bool spreads) {
   if (sampler == SamplerKind::sobol) return kSobolRun;
   return spreads ? 2 : 1;
 }
+
+// Of films of fewer pixels estimateFilmError seldom or never tells an error, however long the render.
+constexpr size_t kFewestPixelsOfError = 16;
 
 // Why no runs of iterations of these settings are independent, so that their spread does not tell the error. Empty:
 // they are.

@@ -24,12 +24,21 @@ template <class S>
 DryPlan dryPlan(RenderPlan<S> plan, const RenderSettings& settings, const FilmArea& area) {
   planLightPaths(plan, settings, area);
   const bool merges = plan.pipeline.has(Fold::photonMap) && !isChosenByTrials(settings.method);
-  return {.memory = plan.memory,
+  return {.method = settings.method,
+          .memory = plan.memory,
           .mergeRadius = merges ? std::optional(plan.mergeRadius) : std::nullopt,
           .specialization = plan.specialization,
           .isa = plan.isa,
           .accel = plan.accel(),
           .spreads = spreadsSamples(plan, settings)};
+}
+
+DryPlan dryPlanOf(const Scene& scene, const RenderSettings& settings) {
+  const RenderSettings limited = withinDepthOfMethod(settings);
+  const FilmArea area = filmOutline(scene.film);
+  const RenderSettings cut = withPieces(limited, scene.film, area.size());
+  return settings.precision == Precision::doubled ? dryPlan(planRender<double>(scene, cut), cut, area)
+                                                  : dryPlan(planRender<float>(scene, cut), cut, area);
 }
 
 }  // namespace
@@ -51,11 +60,16 @@ template RenderPlan<double> finishedPlan(const Scene&, const RenderSettings&, co
                                          std::shared_ptr<const CompiledScene<double>>);
 
 DryPlan planWithoutSession(const Scene& scene, const RenderSettings& settings) {
-  const RenderSettings limited = withinDepthOfMethod(settings);
-  const FilmArea area = filmOutline(scene.film);
-  const RenderSettings cut = withPieces(limited, scene.film, area.size());
-  return settings.precision == Precision::doubled ? dryPlan(planRender<double>(scene, cut), cut, area)
-                                                  : dryPlan(planRender<float>(scene, cut), cut, area);
+  try {
+    return dryPlanOf(scene, settings);
+  } catch (const MemoryBudgetError&) {
+    if (!areTried(settings)) throw;
+  }
+  // Trials may choose path tracing, which needs the least memory.
+  RenderSettings least = settings;
+  least.method = Method::pt;
+  least.lightPaths.reset();
+  return dryPlanOf(scene, least);
 }
 
 MemoryPlan planMemory(const Scene& scene, const RenderSettings& settings) {

@@ -18,6 +18,7 @@ RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, c
 
 // What a session with these settings would be. Nothing of the film's size is allocated.
 struct DryPlan {
+  Method method{};  // of the settings; pt where trials choose the method and the budget suffices for pt alone
   MemoryPlan memory;
   std::optional<MergeRadius> mergeRadius;  // of methods that merge; of evcm that of the one it chooses, not known here
   Specialization specialization{};

@@ -96,7 +96,10 @@ class Planner {
     // A splat of the pilot's mean exponent has about 2^kSplatUnitBits units.
     memory_.splatScale = std::ldexp(1.0, kSplatUnitBits - static_cast<int>(exponent));
     const double spread = pilot_.paths < wanted ? kSpread : 1;
-    memory_.verticesPerWave = static_cast<size_t>(spread * static_cast<double>(pilot_.room));
+    // The pilot has few light paths: its largest wave may be shorter than the render's.
+    const auto ofRender = static_cast<double>(std::min<size_t>(wanted, settings_.waveSize)),
+               ofPilot = static_cast<double>(std::clamp<size_t>(pilot_.paths, 1, settings_.waveSize));
+    memory_.verticesPerWave = static_cast<size_t>(spread * (ofRender / ofPilot) * static_cast<double>(pilot_.room));
     if (plan_.lightUse.connected) memory_.partnerVertices = partnerVertices();
     memory_.lightPaths = wanted;
     if (plan_.pipeline.has(Fold::photonMap) && settings_.memoryBytes) fitLightPaths(*settings_.memoryBytes);

@@ -153,7 +153,8 @@ class GoingOn(Checkpoints):
         self.run_wavecrest(*arguments, "--time", "0.035s", expect=INPUT)
         result = self.run_wavecrest(*arguments, "--spp", "1")
         for number in range(3):
-            self.assertFalse((self.folder / f"image.000{number}.pfm").exists(), result.stderr)
+            self.assertNotIn(f"image.000{number}.exr", result.stderr)
+        self.assertIn("image.0003.exr: left out", result.stderr)
 
     def test_a_render_goes_on_to_more_time(self):
         parts = []

@@ -122,6 +122,11 @@ class Sums(MpiTest):
         self.assertIn("3 processes share as many iterations", result.stderr)
         self.assert_equal_but_for_rounding(self.image("joint.pfm"), self.image("whole.pfm"), "pt")
 
+    def test_a_dry_run_tells_the_iterations_of_all(self):
+        for method in ("pt", "mlt"):
+            plan = self.mpirun(2, *self.arguments(method, "--spp", "18", "--dry-run")).stdout
+            self.assertIn("ends     after 18 spp\n", plan)
+
     def test_snapshots_are_sums_at_their_times(self):
         for method in ("pt", "vcm", "mlt"):
             more = ["--time", "0.5s", "--snapshot-every", "100ms", "-o", f"{method}.exr", "--stats", "stats.json"]

@@ -33,6 +33,10 @@ class Until(CommandTest):
         self.assertEqual((until["reached"], until["relative_error"]), (False, None))
         self.stats_of("--until-relative-error", "0.4", "-m", "ppm", "--spp", "8")
         self.assertRegex(self.result.stderr, "leaves out the bias of merging")
+        # By what renders, where trials choose it.
+        stats = self.stats_of("--until-relative-error", "0.3", "-m", "evcm")
+        self.assertNotEqual(stats["choice"]["method"], "vcm")
+        self.assertNotIn("bias of merging", str(stats["notes"]))
 
     def test_films_without_variance_and_without_light_end(self):
         self.write("sky.xml", '<scene version="3.0.0"><sensor type="perspective"/><emitter type="constant"/>'
@@ -57,6 +61,17 @@ class Until(CommandTest):
             self.assert_one_error_line(self.render(*arguments, expect=USAGE), "--")
         refused = self.render("--until-relative-error", "0.1", "-m", "mlt", expect=USAGE)
         self.assert_one_error_line(refused, "--until-relative-error: .*; expected another method$")
+        goal = ["render", "cornell-diffuse", "--until-relative-error", "0.5", "--quiet"]
+        refused = self.run_wavecrest(*goal, "--size", "5x3", expect=USAGE)
+        self.assert_one_error_line(refused, "--until-relative-error: a film of 5x3 is too small .*; expected 16 pixels or more$")
+        self.run_wavecrest(*goal, "--size", "4x4", "--spp", "1")
+        # Seventeen films of 12 bytes a pixel.
+        refused = self.run_wavecrest(*goal, "--size", "640x480", "--memory", "62M", "--dry-run", expect=USAGE)
+        self.assert_one_error_line(refused, r"--memory: the films that .* take 62\.7 MB; expected more than that$")
+        refused = self.run_wavecrest(*goal, "--size", "640x480", "--memory", "70M", "--dry-run", expect=USAGE)
+        self.assert_one_error_line(refused, r"--memory: this scene needs \d+ MB at least by pt")
+        plan = self.run_wavecrest(*goal, "--size", "640x480", "--memory", "100M", "--dry-run").stdout
+        self.assertIn("and 62.7 MB for the films that tell the error\n", plan)
 
     def test_a_reference_of_another_size_is_bad_input(self):
         reference = self.path("reference.exr")

@@ -145,8 +145,8 @@ class Usage(CommandTest):
             ("--threads", "4097", "'4097' is out of range; expected 1 to 4096"),
             ("--max-depth", "-2", "'-2' is out of range; expected 1 to 4095, or -1"),
             ("--rr-depth", "3000000000", "'3000000000' is out of range; expected 1 to 2147483647"),
-            ("--radius", "nan", "'nan' is no number; expected 1e-09 to 10, or auto"),
-            ("--radius", "1e999", "'1e999' is out of range; expected 1e-09 to 10, or auto"),
+            ("--radius", "nan", "'nan' is no number; expected 1e-06 to 10, or auto"),
+            ("--radius", "1e999", "'1e999' is out of range; expected 1e-06 to 10, or auto"),
             ("--radius-alpha", "1.5", "'1.5' is out of range; expected 0 to 1"),
         ]:
             with self.subTest(option=option, value=value):
@@ -219,6 +219,9 @@ class Usage(CommandTest):
         self.assertIn("ends     once the relative error is 0.1\n", result.stdout)
         self.render("--dry-run", "--until-relative-error", "0.1", "--snapshot-every", "1s", "-o", "a.exr", expect=USAGE)
         self.render("--dry-run", "--until-ssim", "0.9", "-o", "image.exr", expect=USAGE)
+        # A guide does not fit, and trials may do without.
+        self.assertIn("; of pt, if trials choose it\n", self.render("--dry-run", "-m", "gpt", "--memory", "50M").stdout)
+        self.render("--dry-run", "-m", "gpt", "--guide", "radiance", "--memory", "50M", expect=USAGE)
 
     def test_a_render_ends_with_a_line_about_itself(self):
         self.assertRegex(self.render("--spp", "3", "-o", "image.exr").stderr, r"wavecrest: image\.exr: 3 spp in .*paths/s")
@@ -234,8 +237,8 @@ class Usage(CommandTest):
             (note,) = read_json(self.path("stats.json"))["notes"]
             self.assertIn('integrator "bdpt"', note)
         self.assertEqual(result.stderr, "")
-        result = self.render("--spp", "1", "-m", "vcm", "--radius", "1e-9", "--quiet", "--stats", "-")
-        self.assertIn("--radius 1e-09 is below what positions resolve", json.loads(result.stdout)["notes"][0])
+        result = self.render("--spp", "1", "-m", "vcm", "--radius", "0.7", "--quiet", "--stats", "-")
+        self.assertIn("--radius 0.7 blurs over the whole scene", json.loads(result.stdout)["notes"][0])
         self.assertEqual(self.render("--spp", "1", "--stats", "stats.json", "--quiet").stderr, "")
         self.assertEqual(read_json(self.path("stats.json"))["notes"], [])
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/inspect/inspection.h"
 #include "engine/pilot/finished_plan.h"
 #include "engine/plan/memory_plan.h"
 #include "engine/plan/render_plan.h"
@@ -76,6 +77,19 @@ INSTANTIATE_TEST_SUITE_P(Methods, MemoryPlanTest, testing::ValuesIn([] {
                            return methods;
                          }()),
                          [](const auto& instance) { return std::string(toString(instance.param)); });
+
+// Whatever sampler the settings have for another method.
+TEST(MemoryPlan, ofAnInspectionHasTheSamplerOfEachMethod) {
+  const Scene scene = sceneFile("cornell-mirror", 40, 30);
+  RenderSettings settings = plannedSettings(Method::pt);
+  settings.sampler = SamplerKind::sobol;
+  const SceneInspection facts = inspectScene(scene, settings);
+  for (const MethodInspection& row : facts.methods) {
+    settings.method = row.method;
+    settings.sampler = bestSampler(settings);
+    EXPECT_EQ(row.memory.photons, planMemory(scene, settings).photons) << toString(row.method);
+  }
+}
 
 TEST(MemoryPlan, coversTheBootstrap) {
   const Scene scene = sceneFile("cornell-diffuse", 40, 30);
@@ -190,6 +204,18 @@ TEST(MemoryPlan, hasRoomForLightVerticesThatAreCollected) {
   EXPECT_LT(5 * planMemory(scene, settings).use.lightVertices, plan.lightVertices);
 }
 
+// The pilot walks fewer light paths than a long wave has.
+TEST(MemoryPlan, hasRoomForTheLightVerticesOfLongWaves) {
+  const Scene scene = sceneFile("cornell-mirror", 256, 192);
+  for (const Method method : {Method::ppm, Method::bpt, Method::vcm}) {
+    SCOPED_TRACE(std::string(toString(method)));
+    RenderSettings settings = plannedSettings(method);
+    settings.waveSize = 1u << 16;
+    const MemoryUse plan = planMemory(scene, settings).use;
+    expectNear(plan.lightVertices, statisticsOf(scene, settings, 2).memory.lightVertices);
+  }
+}
+
 // ---- budget ---------------------------------------------------------------------------------------------------------
 
 // A quarter of the light paths' memory: their number shrinks, the session holds no more than it may, and its film has
@@ -232,6 +258,29 @@ TEST(MemoryBudget, thatIsTooSmallIsRefused) {
     EXPECT_THROW(planMemory(scene, settings), MemoryBudgetError) << entry.name;
     EXPECT_THROW(Session::create(scene, settings), MemoryBudgetError) << entry.name;
   }
+}
+
+// Trials may choose path tracing. A guide that is asked for needs its memory.
+TEST(MemoryBudget, ofTrialsSufficesWhereItDoesForPathTracing) {
+  const Scene scene = sceneFile("cornell-diffuse", 80, 60);
+  const size_t least = planMemory(scene, plannedSettings(Method::pt)).use.total();
+  for (const Method method : {Method::gpt, Method::evcm}) {
+    RenderSettings settings = plannedSettings(method);
+    settings.guide = GuideTarget::automatic;
+    const DryPlan whole = planWithoutSession(scene, settings);
+    EXPECT_EQ(whole.method, method);
+    EXPECT_GT(whole.memory.use.total(), least);
+    settings.memoryBytes = least;
+    const DryPlan plan = planWithoutSession(scene, settings);
+    EXPECT_EQ(plan.method, Method::pt);
+    EXPECT_EQ(plan.memory.use.total(), least);
+    settings.memoryBytes = least - 1;
+    EXPECT_THROW(planWithoutSession(scene, settings), MemoryBudgetError) << toString(method);
+  }
+  RenderSettings learns = plannedSettings(Method::gpt);
+  learns.guide = GuideTarget::radiance;
+  learns.memoryBytes = least;
+  EXPECT_THROW(planWithoutSession(scene, learns), MemoryBudgetError);
 }
 
 TEST(MemoryBudget, ofMethodsWithoutAPhotonMapLeavesTheirLightPathsAlone) {

@@ -168,6 +168,26 @@ TEST(FilmSlices, areMeansOfTheirOwnIterationsAlone) {
   }
 }
 
+// The products of noise are as uneven as the pixels are few. Goals are refused where an error is never told.
+TEST(FilmError, isToldOfFilmsOfAFewPixels) {
+  constexpr int kTrials = 20;
+  const auto told = [](size_t pixels, size_t width) {
+    std::mt19937_64 random(3);
+    std::normal_distribution<float> normal(1, 0.125f);
+    int count = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      std::vector<Film> slices(2 * kFewestSlices - 1);
+      for (Film& slice : slices) {
+        for (size_t pixel = 0; pixel < pixels; ++pixel) slice.insert(slice.end(), 3, normal(random));  // grey
+      }
+      count += estimateFilmError(slices, width) ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(told(1, 1), 0);
+  EXPECT_GT(told(kFewestPixelsOfError, 4), kTrials / 2);
+}
+
 // Two iterations of a film that spreads samples share a place and its mirror image: no slice ends between them.
 TEST(FilmErrorWatch, takesPairsOfIterationsUnderAGaussianFilter) {
   LoadOptions options;
