@@ -20,11 +20,11 @@ constexpr OptionRange<uint64_t> kThreadRange{1, 4096};
 constexpr OptionRange<int> kDepthRange{1, kMostEdges}, kRouletteDepthRange{1, std::numeric_limits<int>::max()};
 constexpr OptionRange<uint64_t> kWaveRange{16, 1 << 20};
 // Merging and connections.
-constexpr OptionRange<double> kRadiusRange{1e-9, 10}, kRadiusAlphaRange{0, 1};
+constexpr OptionRange<double> kRadiusRange{1e-6, 10}, kRadiusAlphaRange{0, 1};
 constexpr OptionRange<uint64_t> kLightPathRange{1, kMostPaths};
 constexpr OptionRange<double> kConnectionRouletteRange{0, 100};
 // Markov chains.
-constexpr OptionRange<uint64_t> kChainRange{1, 1 << 24}, kBootstrapRange{1, 1 << 28}, kRestartRange{1, 1 << 28};
+constexpr OptionRange<uint64_t> kChainRange{1, 1 << 24}, kBootstrapRange{1, 1 << 28}, kRestartRange{1, 1 << 24};
 // Campaigns.
 constexpr OptionRange<double> kTimeFactorRange{1e-4, 1e4};
 // Exposure of 8-bit images.

@@ -116,7 +116,6 @@ void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
   const size_t first = wave * settings_.waveSize, count = itemsOfPiece(wave, targets.size(), settings_.waveSize);
   // All steps are large, so no current numbers are kept.
   ChainState state(count, {});
-  state.samples.values = nullptr;
   // Bootstrap walks draw the same blocks of numbers as the walks of chains.
   const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.view, settings_.limits.maxDepth);
   std::copy_n(kept.blocks, 2, state.samples.blocks);

@@ -25,8 +25,10 @@ ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& setti
     states_.emplace_back(layout_.chainsOf(wave), kept).multiplexed = plan.pipeline.lightPass() != nullptr;
     if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan.pathLaws.law().maxEdges, plan.needs);
   }
-  // A column keeps one block: four numbers, each in a row of its own.
+  // A column keeps one block: four numbers, each in a row of its own. They are saved whole, also what no walk has
+  // drawn.
   if (!states_.empty()) sampleRows_ = size_t{4} * keptColumns(states_.front().samples, kept);
+  for (ChainState& state : states_) std::fill_n(state.samples.values, sampleRows_ * state.samples.stride, 0u);
 }
 
 // Group g is in wave g % size(), at lane g / size() * groupSize() (ChainLayout::chainAt).

@@ -30,6 +30,15 @@ ColumnNeeds columnNeeds(const Scene& scene, Specialization specialization, bool 
           .bsdfOrder = (features & (kSpecularBsdfs | kLayeredBsdfs)) != 0};
 }
 
+template <class S>
+double largestCoordinate(const SceneView<S>& view) {
+  double largest = 0;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    largest = std::max(largest, std::abs(view.center[axis]) + view.halfExtent[axis]);
+  }
+  return largest;
+}
+
 // Mutations of path space keep the events of a path: reflection, refraction or passing, but not which part of a blend.
 void refuseDeltaBlends(const Scene& scene) {
   for (const Shape& shape : scene.shapes) {
@@ -144,8 +153,10 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings,
   plan.scene = compiled ? std::move(compiled) : compileScene<S>(scene, settings.accel, true, settings.instancing);
   plan.view = plan.scene->view;
   if (settings.film) plan.view.camera = withFilm(plan.view.camera, scene.sensor, *settings.film, plan.scene->origin);
-  plan.mergeRadius = {
-      .first = settings.radius.value_or(kFixedRadius), .alpha = settings.radiusAlpha, .scene = plan.view.radius};
+  plan.mergeRadius = {.first = settings.radius.value_or(kFixedRadius),
+                      .alpha = settings.radiusAlpha,
+                      .scene = plan.view.radius,
+                      .least = kSmallestRadius * std::max(1.0, largestCoordinate(plan.view) / plan.view.radius)};
   plan.needs = columnNeeds(scene, plan.specialization, plan.view.instances != nullptr);
   plan.needs.passages = plan.view.passages != nullptr;
   plan.needs.visibility = plan.view.bvh != nullptr;

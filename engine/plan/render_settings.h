@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -49,12 +50,15 @@ struct RenderShare {
 // (engine/chains/README.md).
 constexpr uint64_t kMutationsPerBootstrapSample = 16;
 
+// Visits of a chain to one state are summed in a float, which counts no further.
+constexpr uint64_t kMostEpochSteps = uint64_t{1} << 24;
+
 // Steps from one bootstrap, of so many samples, to the next. Without samples there are no paths for chains, and the
 // first epoch never ends.
 inline uint64_t epochSteps(const MetropolisSettings& settings, uint64_t samples) {
   if (samples == 0) return std::numeric_limits<uint64_t>::max();
   if (settings.restartSteps) return *settings.restartSteps;
-  return std::max<uint64_t>(kMutationsPerBootstrapSample * samples / settings.chains, 1);
+  return std::clamp<uint64_t>(kMutationsPerBootstrapSample * samples / settings.chains, 1, kMostEpochSteps);
 }
 
 // Limits of paths from what a scene file or a user says: depth in edges, -1 for as many as roulette allows; the first
@@ -131,6 +135,8 @@ struct RenderSettings {
   Placement placement;  // of the threads and the memory that they share; images do not depend on it
 
   const FilmSettings& filmOf(const Scene& scene) const { return film ? *film : scene.film; }
+  // Of this session; of shares that are rendered at the same time, of all of them.
+  std::optional<uint64_t> jointIterations() const { return share.rounds ? share.iterations : iterations; }
   uint32_t cutForThreads() const { return piecesForThreads.value_or(threads); }
   uint32_t chainsOfShare() const { return (metropolis.chains - share.part + share.parts - 1) / share.parts; }
 };
@@ -150,6 +156,16 @@ inline SamplerSettings samplerOf(const RenderSettings& settings, uint64_t iterat
           .seed = settings.seed + run * kSeedOfRun,
           .iteration = iteration,
           .lightPaths = lightPaths};
+}
+
+// The same in a render that learns. iteration: of the session, which its blocks count (engine/learn/blocks.h). A guide
+// follows from the points of earlier blocks, and later points of their Sobol run complement these: each block has
+// scrambles of its own.
+inline SamplerSettings ownOfBlock(SamplerSettings sampler, uint64_t iteration) {
+  constexpr uint64_t kSeedOfBlock = 0xd1b54a32d192ed03;
+  if (sampler.kind != SamplerKind::sobol) return sampler;
+  sampler.seed += static_cast<uint64_t>(std::bit_width(iteration)) * kSeedOfBlock;
+  return sampler;
 }
 
 // What `render` takes where no option says otherwise. Settings as constructed have the study's choices.

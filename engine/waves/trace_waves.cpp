@@ -12,6 +12,12 @@
 namespace wavecrest {
 
 template <class S>
+SamplerSettings WaveSession<S>::samplerAt(uint64_t iteration, uint64_t lightPaths) const {
+  const SamplerSettings sampler = samplerOf(settings_, numbers_.number(iteration), lightPaths);
+  return learner_.learns() ? ownOfBlock(sampler, iteration) : sampler;
+}
+
+template <class S>
 void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightStore<S>* light, Worker& worker) {
   const FlushToZero flushToZero;
   const FilmArea& area = film_.area();
@@ -21,7 +27,7 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
   const std::optional<SurvivalRule> rule = survivalRule(settings_, pass.walk);
   StageContext<S> context{.scene = &plan_.view,
                           .pixels = area.pixels.data(),
-                          .sampler = samplerOf(settings_, number, plan_.memory.lightPaths),
+                          .sampler = samplerAt(iteration, plan_.memory.lightPaths),
                           .limits = settings_.limits,
                           .survival = pointerTo(rule),
                           .mis = mis,
@@ -103,7 +109,7 @@ void WaveSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration,
   wave.pathCount = count << iterationBits;
   tracePass(plan_.pipeline.cameraPass(), iteration, partners, worker);
   learner_.gather(wave, iteration);
-  worker.counters.nonFinite += addSamples(film_, plan_, samplerOf(settings_, numbers_.number(iteration)), wave);
+  worker.counters.nonFinite += addSamples(film_, plan_, samplerAt(iteration), wave);
   worker.paths += wave.pathCount;
   progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
 }

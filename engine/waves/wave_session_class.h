@@ -55,6 +55,8 @@ class WaveSession final : public PlannedSession<S> {
     return plan_.pipeline.mostIterationBits(settings_.waveSize / (film_.spreads() ? uint32_t{kTilePixels} : 1));
   }
   uint32_t iterationBits(uint64_t next) const;
+  // Of an iteration of the session: with which all of its paths are drawn.
+  SamplerSettings samplerAt(uint64_t iteration, uint64_t lightPaths = 0) const;
   // Light paths or the camera paths of pixels [first, first + count), of one iteration; of camera paths 2^iterationBits
   // iterations.
   void traceLight(size_t first, size_t count, uint64_t iteration, LightStore<S>& store, Worker& worker);

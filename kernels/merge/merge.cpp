@@ -2,7 +2,7 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]; the photon map. out: Radiance grows. METHODS 6.2, 6.4, 5.6
 // (37)-(39). Candidates are (vertex, photon) pairs in a flat list, so that lanes are full whatever the photons per
-// cell; a vertex sums its pairs in the order of photons. Most candidates are hash
+// cell; a vertex sums its pairs in the order in which they are listed. Most candidates are hash
 // collisions. Quantised positions reject them; exact rows decide about the rest.
 #include <algorithm>
 

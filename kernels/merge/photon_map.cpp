@@ -17,6 +17,7 @@ constexpr uint32_t kPartitions = 64;
 constexpr uint32_t kKeysPerLine = kColumnAlignment / sizeof(PhotonKey);
 constexpr uint32_t kNumbersPerLine = kColumnAlignment / sizeof(uint32_t);
 constexpr uint32_t kMinBuckets = 1u << 12;
+constexpr size_t kMostPhotons = size_t{1} << 31;  // buckets are as many or more, and numbered in 32 bits
 // Entries of bucketStart after the last bucket's: searches read four from the bucket on.
 constexpr size_t kStartsBeyond = 4;
 
@@ -136,7 +137,7 @@ void PhotonMap<S>::prepare(std::span<LightStore<S>* const> stores, const PhotonG
     largest = std::max(largest, store->vertices.size);
   }
   storeShift = static_cast<uint32_t>(std::bit_width(largest - 1));
-  if (stores.size() > (size_t{1} << (32 - storeShift))) {
+  if (size > kMostPhotons || stores.size() > (size_t{1} << (32 - storeShift))) {
     throw std::length_error("PhotonMap: more light vertices than 32 bits can tell apart");
   }
   reserve(std::max<size_t>(size, 1));

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "engine/learn/alias_table.h"
 #include "engine/learn/blocks.h"
@@ -261,8 +263,27 @@ TEST(Guide, everyBlockOfARenderIsRight) {
   }
 }
 
-RgbImage guidedImage(const Scene& scene, uint32_t threads, uint32_t waveSize, uint64_t iterations) {
+// Points of a run complement each other: were a guide learned from some of them, the others would not be free of it.
+TEST(Guide, blocksHaveSobolScramblesOfTheirOwn) {
   RenderSettings settings = guideSettings();
+  for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::independent}) {
+    settings.sampler = kind;
+    std::map<uint64_t, uint64_t> blockOfSeed;
+    std::set<uint64_t> blocks;
+    for (uint64_t iteration = 0; iteration < 2 * kSobolRun; ++iteration) {
+      const uint64_t seed = ownOfBlock(samplerOf(settings, iteration), iteration).seed;
+      const uint64_t block = kind == SamplerKind::sobol ? beginOfBlock(iteration) : 0;
+      EXPECT_EQ(blockOfSeed.emplace(seed, block).first->second, block) << iteration;
+      blocks.insert(block);
+    }
+    EXPECT_EQ(blockOfSeed.size(), blocks.size()) << "one seed to a block";
+  }
+}
+
+RgbImage guidedImage(const Scene& scene, uint32_t threads, uint32_t waveSize, uint64_t iterations,
+                     SamplerKind sampler = SamplerKind::independent) {
+  RenderSettings settings = guideSettings();
+  settings.sampler = sampler;
   settings.threads = threads;
   settings.waveSize = waveSize;
   return render(scene, settings, iterations);
@@ -276,6 +297,7 @@ TEST(Guide, imagesDependOnNeitherThreadsNorWaves) {
   for (const uint32_t waveSize : {512u, 1024u, 8192u}) {
     EXPECT_EQ(guidedImage(scene, 2, waveSize, iterations), image) << waveSize;
   }
+  EXPECT_EQ(guidedImage(scene, 1, 2048, 9, SamplerKind::sobol), guidedImage(scene, 2, 512, 9, SamplerKind::sobol));
 }
 
 TEST(Guide, goesOnInTheMiddleOfABlock) {

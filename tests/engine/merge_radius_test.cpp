@@ -64,6 +64,21 @@ TEST(AutoRadius, isAMultipleOfThePixel) {
   EXPECT_LT(radius.inPixels(), 8) << "or the other tests see the limit alone";
 }
 
+// Eight steps of the positions' lattice and more, also where it is coarser than the scene's size says.
+TEST(MergeRadius, isAtLeastWhatPositionsFarFromTheOriginResolve) {
+  Scene scene;
+  addShape(scene, Rectangle{{7, 7, 0}, {2, 0, 0}, {0, 2, 0}}, addDiffuse(scene, 0.5, 0.5, 0.5));
+  Emitter point;
+  point.kind = PointEmitter{.position = {8, 8, 1}, .intensity = {1, 1, 1}};
+  scene.emitters.push_back(point);
+  setCamera(scene, {8, 8, 3}, kFov, kRadiusWidth, kRadiusWidth);
+  RenderSettings settings = automatic();
+  settings.radius = 1e-6;
+  EXPECT_GE(radiusOf(scene, settings).at(0), 8 * 0x1p-20);
+  settings.radius = 0.01;
+  EXPECT_NEAR(radiusOf(scene, settings).at(0), 0.01 * std::numbers::sqrt2, 1e-5);
+}
+
 // METHODS 6.5: one and eight light paths a pixel.
 TEST(AutoRadius, isThatOfEquallyManyLightPaths) {
   for (const double alpha : {0.0, 0.75, 1.0}) {

@@ -205,6 +205,14 @@ TEST_P(MetropolisTest, hasNoStartUpBias) {
                   "restarts every third step");
 }
 
+// Chains count their visits to a state in floats.
+TEST(Metropolis, epochsAreNoLongerThanVisitsAreCounted) {
+  MetropolisSettings settings;
+  EXPECT_EQ(epochSteps(settings, 131072), 16 * 131072 / settings.chains);
+  settings.chains = 1;
+  EXPECT_EQ(epochSteps(settings, uint64_t{1} << 28), uint64_t{1} << 24);
+}
+
 // Bootstraps are as many as a render is long, so that b is never what limits it: over nine epochs its error falls to a
 // third.
 TEST_P(MetropolisTest, errorOfBrightnessFallsAsARenderGoesOn) {

@@ -25,15 +25,15 @@ TEST(RenderSettings, numbersOutOfRangeAreRefusedByName) {
       {{.maxDepth = 4096}, "--max-depth 4096: expected a number from 1 to 4095, or -1"},
       {{.rrDepth = -3}, "--rr-depth -3: expected a number from 1 to 2147483647"},
       {{.wave = 0}, "--wave 0: expected a number from 16 to 1048576"},
-      {{.method = "vcm", .radius = nan}, "--radius nan: expected a number from 1e-09 to 10, or 0"},
-      {{.method = "vcm", .radius = -0.05}, "--radius -0.05: expected a number from 1e-09 to 10, or 0"},
+      {{.method = "vcm", .radius = nan}, "--radius nan: expected a number from 1e-06 to 10, or 0"},
+      {{.method = "vcm", .radius = -0.05}, "--radius -0.05: expected a number from 1e-06 to 10, or 0"},
       {{.method = "vcm", .radiusAlpha = -5}, "--radius-alpha -5: expected a number from 0 to 1"},
       {{.method = "vcm", .lightPaths = kMostPaths + uint64_t{1}},
        "--light-paths 268435457: expected a number from 1 to 268435456"},
       {{.method = "bpt", .connectionRoulette = infinity}, "--connection-roulette inf: expected a number from 0 to 100"},
       {{.method = "mlt", .chains = 0}, "--chains 0: expected a number from 1 to 16777216"},
       {{.method = "mlt", .bootstrap = 0}, "--bootstrap 0: expected a number from 1 to 268435456"},
-      {{.method = "mlt", .restart = (1u << 28) + 1}, "--restart 268435457: expected a number from 1 to 268435456"},
+      {{.method = "mlt", .restart = (1u << 24) + 1}, "--restart 16777217: expected a number from 1 to 16777216"},
   };
   for (const auto& [options, expected] : cases) EXPECT_EQ(refusalOfRender(options), expected);
   // Inspections take the options of all methods.
@@ -46,7 +46,7 @@ TEST(RenderSettings, endsOfRangesAndDefaultsAreTaken) {
   EXPECT_NO_THROW(accepts({}));
   EXPECT_NO_THROW(accepts({.maxDepth = -1}));
   EXPECT_NO_THROW(accepts({.threads = 4096, .maxDepth = kDepthRange.most, .rrDepth = 1, .wave = 16}));
-  EXPECT_NO_THROW(accepts({.method = "vcm", .radius = 1e-9, .radiusAlpha = 1, .lightPaths = kMostPaths}));
+  EXPECT_NO_THROW(accepts({.method = "vcm", .radius = 1e-6, .radiusAlpha = 1, .lightPaths = kMostPaths}));
   EXPECT_NO_THROW(accepts({.method = "mlt", .chains = 1, .bootstrap = 1, .restart = 1}));
 }
 
