@@ -28,7 +28,7 @@ from tree_files import tree_files  # noqa: E402
 
 # Title of each section, and the folders whose Markdown files it holds, in this order.
 SECTIONS = {
-    "Using it": [".", "scenes", "bench/campaign", "bench/checkpoint", "bench/ranks", "library", "python", "containers"],
+    "Using it": [".", "scenes", "bench/campaign", "bench/checkpoint", "bench/ranks", "library", "python"],
     "Measuring": ["bench", "metrics"],
     "How it works": ["engine", "kernels", "tests"],
 }

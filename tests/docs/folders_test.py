@@ -49,6 +49,23 @@ def find_circle(edges):
     return []
 
 
+def room_ranks(text):
+    """How far to the right each room stands in the order that CONTRIBUTING.md gives."""
+    (order,) = re.findall(r"`([^`\n]* -> [^`\n]*)`", text)
+    return {room: rank for rank, rooms in enumerate(order.split(" -> ")) for room in re.findall(r"\w+", rooms)}
+
+
+def find_wrong_ways(edges, ranks):
+    """The examples of includes of another room that is not to the right; rooms without a rank are left out."""
+    return [
+        example
+        for folder, targets in edges.items()
+        for target, example in targets.items()
+        if folder.parts[0] != target.parts[0]
+        and ranks.get(target.parts[0], len(ranks)) <= ranks.get(folder.parts[0], -1)
+    ]
+
+
 class Folders(unittest.TestCase):
     def test_no_circle(self):
         edges = folders_included(ROOT)
@@ -57,6 +74,20 @@ class Folders(unittest.TestCase):
 
     def test_a_circle_is_found(self):
         self.assertEqual(find_circle({"a": {"b": "ab"}, "b": {"c": "bc"}, "c": {"b": "cb"}}), ["bc", "cb"])
+
+    def test_rooms_include_those_to_their_right(self):
+        ranks = room_ranks((ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"))
+        self.assertEqual(sorted([*ranks, "tests"]), ROOMS)
+        self.assertEqual(find_wrong_ways(folders_included(ROOT), ranks), [])
+
+    def test_a_room_that_includes_one_to_its_left_is_found(self):
+        ranks = room_ranks("`{a, b} -> c -> d`")
+        self.assertEqual(ranks, {"a": 0, "b": 0, "c": 1, "d": 2})
+        rooms = {room: pathlib.Path(room, "inner") for room in "abcd"}
+        pairs = [("a", "c"), ("a", "b"), ("d", "c"), ("c", "d")]
+        edges = {rooms[a]: {rooms[b]: a + b for first, b in pairs if first == a} for a in rooms}
+        edges[rooms["a"]][pathlib.Path("a/other")] = "aa"
+        self.assertEqual(find_wrong_ways(edges, ranks), ["ab", "dc"])
 
 
 class Texts(unittest.TestCase):
