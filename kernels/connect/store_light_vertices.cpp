@@ -12,7 +12,7 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// The vertices of all waves are more than the caches hold: asks for the lines that later blocks will be written to.
+// The vertices of all waves are more than the caches hold: prefetches the lines that later blocks will be written to.
 constexpr size_t kColumnsAhead = 64;  // items
 template <class... Items>
 WAVECREST_INLINE void prefetchColumns(size_t out, const Column<Items>&... columns) {

@@ -141,7 +141,7 @@ void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
       wave.hits.u[i + k] = u;
       wave.hits.v[i + k] = v;
     }
-    // Ask for the records of these primitives, and for what the records of the packet before lead to.
+    // Prefetch the records of these primitives, and for what the records of the packet before lead to.
     for (size_t k = 0; k < kWidth; ++k) {
       if (wave.hits.primitive[i + k] != kMiss) prefetchPrimitive(*context.scene, wave.hits.primitive[i + k]);
     }

@@ -1,7 +1,7 @@
 // Rays through the hierarchy of bvh.h, many at a time.
 //
 // A ray of its own spends its time waiting for memory and for branches that cannot be foreseen. Here some sixty
-// walkers, each a ray or a packet of rays, are under way at once: one takes a step, asks for what its next step reads,
+// walkers, each a ray or a packet of rays, are under way at once: one takes a step, prefetches what its next one reads,
 // and makes room for the others. A step has no branch but the end of its loop: walkers are kept in one list for each
 // kind of entry that they visit, and a node's children go to the walker's stack sorted in a register.
 //
