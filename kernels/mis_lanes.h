@@ -3,44 +3,38 @@
 //
 // Weights use the balance heuristic. Walks whose only strategies are emission and next event estimation use the power
 // heuristic (METHODS 5.1). Roulette is not part of any density. Path tracing needs only dVCM: without kBidirectional
-// the other sums do not exist.
+// dVC does not exist.
 #pragma once
 
 #include "kernels/lane_support.h"
 
 WAVECREST_SIMD_BEGIN
 
-// At vertex i, after arrival: dVCM is 1 / (area density of the generating vertex), dVC and dVM are the densities of all
-// earlier strategies relative to a connection and to a merge at i.
+// At vertex i, after arrival: dVCM is 1 / (area density of the generating vertex), dVC the densities of all earlier
+// strategies relative to a connection at i, or to a merge where vertices are merged and never connected (METHODS 5.2).
 template <class Real>
 struct MisSums {
-  Real dVCM, dVC, dVM;
+  Real dVCM, dVC;
 };
 
 template <uint32_t kFeatures, class S>
 WAVECREST_INLINE auto loadMis(const PathStates<S>& paths, size_t i) {
   using Real = decltype(load(paths.dVCM, i));
   if constexpr (has(kFeatures, kBidirectional)) {
-    return MisSums<Real>{load(paths.dVCM, i), load(paths.dVC, i), load(paths.dVM, i)};
+    return MisSums<Real>{load(paths.dVCM, i), load(paths.dVC, i)};
   } else {
-    return MisSums<Real>{load(paths.dVCM, i), Real(0), Real(0)};
+    return MisSums<Real>{load(paths.dVCM, i), Real(0)};
   }
 }
 template <uint32_t kFeatures, class Real, class S>
 WAVECREST_INLINE void storeMis(const MisSums<Real>& mis, PathStates<S>& paths, size_t i) {
   store(mis.dVCM, paths.dVCM, i);
-  if constexpr (has(kFeatures, kBidirectional)) {
-    store(mis.dVC, paths.dVC, i);
-    store(mis.dVM, paths.dVM, i);
-  }
+  if constexpr (has(kFeatures, kBidirectional)) store(mis.dVC, paths.dVC, i);
 }
 template <uint32_t kFeatures, class Real, class S>
 WAVECREST_INLINE void appendMis(const MisSums<Real>& mis, Mask m, PathStates<S>& paths, size_t out) {
   append(mis.dVCM, m, paths.dVCM, out);
-  if constexpr (has(kFeatures, kBidirectional)) {
-    append(mis.dVC, m, paths.dVC, out);
-    append(mis.dVM, m, paths.dVM, out);
-  }
+  if constexpr (has(kFeatures, kBidirectional)) append(mis.dVC, m, paths.dVC, out);
 }
 
 // Sum of the densities of all other strategies, divided by this one's: the MIS weight is 1 / (1 + sum). With two
@@ -66,20 +60,20 @@ WAVECREST_INLINE Mask isFirstMerge(const MisSums<Real>& mis) {
   return mis.dVC == Real(0);
 }
 
-// m, times a weight: whether merging at this vertex is a strategy. With firstMerges it never is at a vertex of a light
-// walk that is left or connected by more than a delta lobe, as the camera's side has a vertex before it.
+// vmWeight m; m: whether merging at this vertex is a strategy. With firstMerges it never is at a vertex of a light walk
+// that is left or connected by more than a delta lobe, as the camera's side has a vertex before it.
 template <class Real>
-WAVECREST_INLINE Real ifMerging(const MisSettings& settings, Walk walk, const MisSums<Real>& mis, double weight) {
-  if (!settings.firstMerges) return Real(weight);
-  return walk == Walk::light ? Real(0) : zeroUnless(isFirstMerge(mis), Real(weight));
+WAVECREST_INLINE Real ifMerging(const MisSettings& settings, Walk walk, const MisSums<Real>& mis) {
+  const Real weight(settings.vmWeight);
+  if (!settings.firstMerges) return weight;
+  return walk == Walk::light ? Real(0) : zeroUnless(isFirstMerge(mis), weight);
 }
 
-// vmWeight m + e dVCM + p_r dVC: densities of everything behind this vertex relative to joining it by a connection.
+// vmWeight m + e dVCM + p_r dVC: densities of everything behind this vertex relative to joining it, as dVC is.
 template <class Real>
 WAVECREST_INLINE Real behindConnection(const MisSettings& settings, Walk walk, uint32_t depth, const MisSums<Real>& mis,
                                        Real pdfReverse) {
-  return ifMerging(settings, walk, mis, settings.vmWeight) +
-         mulAdd(Real(edgeSwitch(settings, depth)), mis.dVCM, pdfReverse * mis.dVC);
+  return ifMerging(settings, walk, mis) + mulAdd(Real(edgeSwitch(settings, depth)), mis.dVCM, pdfReverse * mis.dVC);
 }
 
 // The same of a light walk's vertex that is joined with the lens, where a camera path could have begun to merge.
@@ -89,10 +83,12 @@ WAVECREST_INLINE Real behindLens(const MisSettings& settings, uint32_t depth, co
   return Real(settings.vmWeight) + mulAdd(Real(edgeSwitch(settings, depth)), mis.dVCM, pdfReverse * mis.dVC);
 }
 
-// e dVCM vcWeight + p dVM: the same relative to joining it by a merge.
+// vcWeight dVCM + p dVC / vmWeight: the same relative to joining it by a merge. Where vcWeight is not 0, e is 1: every
+// edge could have been a connection.
 template <class Real>
-WAVECREST_INLINE Real behindMerge(const MisSettings& settings, uint32_t depth, const MisSums<Real>& mis, Real pdf) {
-  return mulAdd(Real(edgeSwitch(settings, depth) * settings.vcWeight), mis.dVCM, pdf * mis.dVM);
+WAVECREST_INLINE Real behindMerge(const MisSettings& settings, const MisSums<Real>& mis, Real pdf) {
+  const Real perMerge(settings.connect ? settings.vcWeight : 1.0);  // 1 / vmWeight
+  return mulAdd(Real(settings.vcWeight), mis.dVCM, pdf * (mis.dVC * perMerge));
 }
 
 // Scattering (34)-(36). woCosine: |wo . geometric normal|.
@@ -103,12 +99,9 @@ WAVECREST_INLINE MisSums<typename P::Real> scatterMis(const MisSettings& setting
   using Real = typename P::Real;
   const Real inversePdf = reciprocal(pdf);
   if constexpr (has(kFeatures, kBidirectional)) {
-    const Real scale = woCosine * inversePdf;
-    return {inversePdf, scale * behindConnection(settings, walk, depth, mis, pdfReverse),
-            scale * (ifMerging(settings, walk, mis, settings.merge ? 1 : 0) +
-                     behindMerge(settings, depth, mis, pdfReverse))};
+    return {inversePdf, woCosine * inversePdf * behindConnection(settings, walk, depth, mis, pdfReverse)};
   } else {
-    return {inversePdf, Real(0), Real(0)};
+    return {inversePdf, Real(0)};
   }
 }
 
@@ -117,18 +110,7 @@ WAVECREST_INLINE MisSums<typename P::Real> scatterMis(const MisSettings& setting
 // J = (P_r / P_f) |wo . N| (c_wi / c_wo) (eta_wi / eta_wo)^2, c being cosines to the shading normal.
 template <class Real>
 WAVECREST_INLINE MisSums<Real> scatterSpecularMis(const MisSums<Real>& mis, Real jacobian) {
-  return {Real(0), mis.dVC * jacobian, mis.dVM * jacobian};
-}
-
-// A row stores one of dVC and dVM. Where vertices are connected it is dVC, and dVM follows from it: dVM = vcWeight dVC
-// (METHODS 5.6).
-template <class Real>
-WAVECREST_INLINE Real keptBehind(const MisSettings& settings, const MisSums<Real>& mis) {
-  return settings.connect ? mis.dVC : mis.dVM;
-}
-template <class Real>
-WAVECREST_INLINE Real mergeSum(const MisSettings& settings, Real behind) {
-  return behind * Real(settings.connect ? settings.vcWeight : 1.0);
+  return {Real(0), mis.dVC * jacobian};
 }
 
 WAVECREST_SIMD_END

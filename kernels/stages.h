@@ -104,8 +104,8 @@ struct MisSettings {
   bool mergeWeights = true;     // false: merging makes each path once, and alone
   bool firstMerges = false;     // beside connections: merging only where a camera path can for the first time
   bool powerHeuristic = false;  // where s = 0 and s = 1 are all there is: weights by squares of densities
-  double vmWeight = 0;          // merging seen from a connection: pi r^2 N_L, or 0 without merging
-  double vcWeight = 0;          // connection seen from a merge: its reciprocal, or 0 where merging stands alone
+  double vmWeight = 0;          // a merge in dVC: pi r^2 N_L beside connections, 1 without them; 0: never counts
+  double vcWeight = 0;          // connection seen from a merge: 1 / vmWeight beside connections, or 0
   double mergeNorm = 0;         // 1 / (pi r^2 N_L)
   double radius = 0;            // r
   double lightPaths = 0;        // N_L

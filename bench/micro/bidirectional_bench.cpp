@@ -92,7 +92,7 @@ void fillWave(Wave<float>& wave, size_t count, double side, Random& random) {
     wave.surfaces.normalZ[i] = 1;
     wave.surfaces.offset[i] = 1e-6f;
     wave.paths.throughputR[i] = wave.paths.throughputG[i] = wave.paths.throughputB[i] = 1;
-    wave.paths.dVCM[i] = wave.paths.dVC[i] = wave.paths.dVM[i] = random.uniform(0, 1);
+    wave.paths.dVCM[i] = wave.paths.dVC[i] = random.uniform(0, 1);
     wave.paths.lane[i] = i;
     wave.radiance.red[i] = wave.radiance.green[i] = wave.radiance.blue[i] = 0;
   }
@@ -115,7 +115,7 @@ void fillStore(LightStore<float>& store, const PhotonGrid<float>& grid, size_t c
                 .normal = {0, 0, up},
                 .dVCM = density,
                 .throughput = {1, 1, 1},
-                .behind = density};
+                .dVC = density};
     const auto at = grid.at(v.row[i].position);
     v.cell[i] = at.cell;
     v.place[i] = at.place;

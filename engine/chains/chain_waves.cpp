@@ -7,14 +7,6 @@
 #include "engine/tasks/flush_to_zero.h"
 
 namespace wavecrest {
-namespace {
-
-// Columns of numbers that chains keep: those of the light walk follow those of the camera walk.
-uint32_t keptColumns(const ChainSamples& samples, const ChainState::Kept& kept) {
-  return kept.vertices[1] == 0 ? samples.firstColumn[1] : samples.column(1, 4 * kept.vertices[1]);
-}
-
-}  // namespace
 
 template <class S>
 ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
@@ -27,7 +19,7 @@ ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& setti
   }
   // A column keeps one block: four numbers, each in a row of its own. They are saved whole, also what no walk has
   // drawn.
-  if (!states_.empty()) sampleRows_ = size_t{4} * keptColumns(states_.front().samples, kept);
+  sampleRows_ = size_t{4} * ChainState::columnsOf(kept);
   for (ChainState& state : states_) std::fill_n(state.samples.values, sampleRows_ * state.samples.stride, 0u);
 }
 

@@ -211,7 +211,7 @@ MisSettings misSettings(MisSettings strategies, const MergeRadius& radius, size_
   // `density` is eta. The other constants follow from it (METHODS 5.1).
   const double density = std::numbers::pi * strategies.radius * strategies.radius * lightPaths;
   strategies.mergeNorm = 1 / density;
-  strategies.vmWeight = strategies.merge && strategies.mergeWeights ? density : 0;
+  if (strategies.merge && strategies.mergeWeights) strategies.vmWeight = strategies.connect ? density : 1;
   strategies.vcWeight = strategies.merge && strategies.connect ? 1 / density : 0;
   return strategies;
 }

@@ -66,7 +66,7 @@ std::string_view brokenPaths(const Wave<S>& wave) {
     }
     // NaN fails every comparison, hence the negated tests.
     if (!(paths.dVCM[i] >= 0)) return "MIS sums from 0";
-    if (paths.dVC.needed() && (!(paths.dVC[i] >= 0) || !(paths.dVM[i] >= 0))) return "MIS sums from 0";
+    if (paths.dVC.needed() && !(paths.dVC[i] >= 0)) return "MIS sums from 0";
     if (paths.rouletteScale.needed() && !(paths.rouletteScale[i] > 0)) return "a scale for roulette";
   }
   return {};

@@ -82,7 +82,7 @@ struct PathPlans : Columns<PathPlans> {
   Column<uint32_t> kind;  // Mutation
   Column<uint32_t> lightKept, eyeFrom, eyeTo, lightWalked;
   Column<uint32_t> lightRays, eyeRays;                              // how many edges the walks trace
-  Column<uint32_t> order;                                           // lanes by kind; scratch of the walks
+  Column<uint32_t> order;                                           // lanes by kind: the order of the walks
   Column<uint32_t> lightReached, eyeReached, lightEvent, eyeEvent;  // edges traced; events of the rows where they begin
   Column<float> angle;                                              // of a caustic perturbation
   auto all() {

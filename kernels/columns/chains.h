@@ -121,6 +121,8 @@ struct ChainState {
     bytes_ = bytesFor(capacity, kept);
   }
 
+  // Columns of numbers that chains keep: those of the light walk follow those of the camera walk.
+  static uint32_t columnsOf(const Kept& kept) { return columnsOf(kept, 0) + columnsOf(kept, 1); }
   // Memory of so many chains.
   static size_t bytesFor(size_t capacity, const Kept& kept) {
     return Chains().bytes(capacity) + valuesOf(capacity, kept) * sizeof(uint32_t) + kColumnAlignment;
@@ -136,7 +138,7 @@ struct ChainState {
     return layout.column(walk, 4 * kept.vertices[walk]);
   }
   static size_t valuesOf(size_t capacity, const Kept& kept) {
-    return size_t{4} * (columnsOf(kept, 0) + columnsOf(kept, 1)) * paddedItems(capacity);
+    return size_t{4} * columnsOf(kept) * paddedItems(capacity);
   }
 
   size_t bytes_ = 0;

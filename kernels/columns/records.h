@@ -39,18 +39,18 @@ struct Surfaces : Columns<Surfaces<S>>, VertexDetails<S> {
   auto all() { return std::tuple_cat(std::tie(normalX, normalY, normalZ, offset), this->details()); }
 };
 
-// What a path carries along. dVCM, dVC and dVM are the partial sums of the MIS recursion of Georgiev's technical report
-// "Implementing Vertex Connection and Merging" (2012); path tracing needs only dVCM.
+// What a path carries along. dVCM and dVC are partial sums of the MIS recursion of Georgiev's technical report
+// "Implementing Vertex Connection and Merging" (2012), whose dVM follows from dVC; path tracing needs only dVCM.
 template <class S>
 struct PathStates : Columns<PathStates<S>> {
   Column<S> throughputR, throughputG, throughputB;
-  Column<S> dVCM, dVC, dVM;  // dVC, dVM: dropped without connections
+  Column<S> dVCM, dVC;  // dVC: dropped without connections
   // What makes a throughput comparable with 1 in Russian roulette: on camera paths the product of (eta_wo /
   // eta_wi)^2, on light paths the reciprocal of the first throughput. Dropped where it is always 1.
   Column<S> rouletteScale;
   Column<uint32_t> lane;
   Column<uint32_t> light;  // light that a light path began on; dropped without connections
-  auto all() { return std::tie(throughputR, throughputG, throughputB, dVCM, dVC, dVM, rouletteScale, lane, light); }
+  auto all() { return std::tie(throughputR, throughputG, throughputB, dVCM, dVC, rouletteScale, lane, light); }
 };
 
 // Segments whose visibility decides over a contribution. Pushed by nextEvent and the connecting stages, at most as many
@@ -60,7 +60,7 @@ template <class S>
 struct ShadowRays : Columns<ShadowRays<S>> {
   Column<float> originX, originY, originZ, directionX, directionY, directionZ;
   Column<S> red, green, blue;  // contribution if visible, weight included
-  Column<uint32_t> target;     // lane whose radiance it joins
+  Column<uint32_t> target;     // lane whose radiance it joins; of light walks the pixel
   // Densities of all other strategies, divided by this one's, which its weight was made from; dropped without passages.
   Column<S> others;
   auto all() {
@@ -94,14 +94,13 @@ struct VertexPairs : Columns<VertexPairs> {
 // what pairs it with comes to it in no order, again and again.
 //   tag: index into SceneView::materials, and for light vertices the edges from the light (kernels/shade/vertex_tag.h)
 //   wi: unit direction back along the path
-//   dVCM, throughput: as in PathStates
-//   behind: dVC where light vertices are connected, else dVM; where they are merged as well, dVM is vcWeight dVC
+//   dVCM, throughput, dVC: as in PathStates
 template <class S>
 struct alignas(kColumnAlignment) VertexRow {
   S position[3], offset;
   S wi[3], tag;
   S normal[3], dVCM;
-  S throughput[3], behind;
+  S throughput[3], dVC;
 };
 static_assert(sizeof(VertexRow<float>) == 64);
 

@@ -13,7 +13,7 @@ struct ColumnNeeds {
   bool tangents = true;
   bool instances = true;
   bool rouletteScale = true;
-  // What methods with light paths need: dVC, dVM and the light of paths, pairs, vertex rows.
+  // What methods with light paths need: dVC and the light of paths, pairs, vertex rows.
   bool connections = true;
   // Room to sort vertices by their BSDFs, where not all are diffuse (kernels/shade/vertex_order_lanes.h).
   bool bsdfOrder = true;

@@ -22,7 +22,6 @@ struct Vertices {
     if (!needs.rouletteScale) paths.rouletteScale.drop();
     if (!needs.connections) {
       paths.dVC.drop();
-      paths.dVM.drop();
       paths.light.drop();
     }
   }

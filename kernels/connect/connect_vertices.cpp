@@ -137,11 +137,9 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
   const Real inverseDist2 = inverseDistance * inverseDistance;
   const Real zCosine = abs(dot(towards, z.normal)), yCosine = abs(dot(towards, y.normal));
   const Real wLight = zBsdf.pdf * yCosine * inverseDist2 *
-                      behindConnection(context.mis, Walk::light, kAnyLightDepth,
-                                       MisSums<Real>{yRow.dVCM, yRow.behind, Real(0)}, yBsdf.pdfReverse);
+                      behindConnection(context.mis, Walk::light, kAnyLightDepth, yRow.mis, yBsdf.pdfReverse);
   const Real wCamera = yBsdf.pdf * zCosine * inverseDist2 *
-                       behindConnection(context.mis, Walk::camera, context.depth,
-                                        MisSums<Real>{zRow.dVCM, zRow.behind, Real(0)}, zBsdf.pdfReverse);
+                       behindConnection(context.mis, Walk::camera, context.depth, zRow.mis, zBsdf.pdfReverse);
 
   // c_z(omega_l) at the camera's end; c_y(omega_l) / n_y(omega_l) n_y(to z) at the light's (METHODS 3.9).
   const Real yWi = max(abs(y.wiCosine), Real(kSmallestCosine));

@@ -75,7 +75,7 @@ void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<
     storeVec3(zero, wave.radiance.red, wave.radiance.green, wave.radiance.blue, i);
     // t = 1 would have found this edge with density p_cam per light path that a pixel's camera path competes with;
     // without that strategy the recursion starts from nothing.
-    MisSums<Real> mis{Real(0), Real(0), Real(0)};
+    MisSums<Real> mis{Real(0), Real(0)};
     if constexpr (has(kFeatures, kBidirectional)) {
       if (context.mis.camera)
         mis.dVCM = Real(context.mis.lightPaths) / cameraPdf<P>(context.scene->camera, ray.direction);

@@ -29,7 +29,7 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromPoint(const LightLanes<typ
   using Real = typename P::Real;
   const Vec3<Real> direction = uniformSphere<Real>(to<Real>(u.b), to<Real>(u.c));
   const Real inverse = reciprocal(light.pick) * Real(4 * kPi);
-  return {light.p0, direction, light.radiance * inverse, {Real(4 * kPi), Real(0), Real(0)}};
+  return {light.p0, direction, light.radiance * inverse, {Real(4 * kPi), Real(0)}};
 }
 
 // Origin of a ray that comes from outside the scene.
@@ -50,10 +50,7 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromConstant(const SceneView<t
   const Real inversePick = reciprocal(light.pick);
   const Real area = projectedArea<Real>(scene, direction);
   const Real inverseEmission = inversePick * area * Real(4 * kPi);
-  return {pointOfEntry<P>(scene, direction, v),
-          direction,
-          light.radiance * inverseEmission,
-          {area, inverseEmission, Real(0)}};
+  return {pointOfEntry<P>(scene, direction, v), direction, light.radiance * inverseEmission, {area, inverseEmission}};
 }
 
 // Quads, triangles and spheres: uniform over the area, then cosine-distributed around the normal there. Lanes of other
@@ -90,7 +87,7 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromArea(const SceneView<typen
     radiance =
         radiance * to<Real>(textureFactor(scene.textures, scene.texels, light.texture, to<Float>(a), to<Float>(b)));
   }
-  return {mulAdd(normal, light.offset, point), direction, radiance * flux, {dVCM, flux, Real(0)}};
+  return {mulAdd(normal, light.offset, point), direction, radiance * flux, {dVCM, flux}};
 }
 
 // Spot lights: uniform in the cone. Projectors: uniform on the picture.
@@ -114,7 +111,7 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromBeam(const SceneView<typen
   return {light.p0,
           direction,
           light.radiance * beamFactor<P, kFeatures>(scene, light, direction) * (inversePdf * reciprocal(light.pick)),
-          {inversePdf, Real(0), Real(0)}};
+          {inversePdf, Real(0)}};
 }
 
 // Directional lights: the direction is given, only the point of entry is sampled.
@@ -128,7 +125,7 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitDirectional(const SceneView<ty
   return {pointOfEntry<P>(scene, direction, v),
           direction,
           light.radiance * (area * reciprocal(light.pick)),
-          {area, Real(0), Real(0)}};
+          {area, Real(0)}};
 }
 
 // Environment maps: the direction that next event estimation would sample, reversed. more: its four numbers.
@@ -146,7 +143,7 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromMap(const SceneView<typena
   return {pointOfEntry<P>(scene, -toLight, v),
           -toLight,
           mapRadiance(scene.environment, point) * inverseEmission,
-          {area, inverseEmission, Real(0)}};
+          {area, inverseEmission}};
 }
 
 template <class Real>
@@ -154,7 +151,7 @@ WAVECREST_INLINE EmittedRay<Real> select(Mask m, const EmittedRay<Real>& yes, co
   return {select(m, yes.origin, no.origin),
           select(m, yes.direction, no.direction),
           select(m, yes.throughput, no.throughput),
-          {select(m, yes.mis.dVCM, no.mis.dVCM), select(m, yes.mis.dVC, no.mis.dVC), Real(0)}};
+          {select(m, yes.mis.dVCM, no.mis.dVCM), select(m, yes.mis.dVC, no.mis.dVC)}};
 }
 
 }  // namespace
@@ -199,7 +196,6 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
     const Real zero(0);
     if (!context.mis.nextEvent) ray.mis.dVCM = zero;
     if (!context.mis.emission) ray.mis.dVC = zero;
-    ray.mis.dVM = ray.mis.dVC * Real(context.mis.vcWeight);
     storeVec3(ray.origin, rays.originX, rays.originY, rays.originZ, i);
     storeVec3(ray.direction, rays.directionX, rays.directionY, rays.directionZ, i);
     storeVec3(ray.throughput, paths.throughputR, paths.throughputG, paths.throughputB, i);

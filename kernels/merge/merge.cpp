@@ -296,12 +296,9 @@ class Merger {
     const Real perCosine = zeroUnless(cosine > Real(0), reciprocal(max(cosine, Real(kSmallestCosine))));
     Real weight(1);
     if (context_.mis.mergeWeights) {
-      const MisSums<Real> light{facing.d, Real(0), mergeSum(context_.mis, carried.d)};
-      const MisSums<Real> camera{row.dVCM, Real(0), mergeSum(context_.mis, row.behind)};
-      // Where connections compete (vcWeight > 0) every edge may be one; else vcWeight is 0 and the switch does not
-      // matter.
-      const Real wLight = behindMerge(context_.mis, 1, light, bsdf.pdf);
-      const Real wCamera = behindMerge(context_.mis, 1, camera, bsdf.pdfReverse);
+      const MisSums<Real> light{facing.d, carried.d};
+      const Real wLight = behindMerge(context_.mis, light, bsdf.pdf);
+      const Real wCamera = behindMerge(context_.mis, row.mis, bsdf.pdfReverse);
       weight = reciprocal(Real(1) + wLight + wCamera);
     }
     const Real scale = Real(context_.mis.mergeNorm) * weight * bsdf.lightCosine * inverseOfStop<kBsdfs>(active, i);

@@ -28,7 +28,7 @@ struct alignas(8) PhotonKey {
 
 template <class S>
 struct PhotonMap {
-  const PhotonKey* keys = nullptr;  // by bucket, within a bucket by (wave, depth, lane)
+  const PhotonKey* keys = nullptr;  // by bucket, within a bucket by (wave, depth, place in the wave)
   size_t size = 0;
   PhotonGrid<S> grid;
   uint32_t bucketMask = 0;                // buckets - 1, a power of two less one

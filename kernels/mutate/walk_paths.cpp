@@ -27,7 +27,7 @@ WAVECREST_INLINE size_t appendRay(Wave<S>& wave, Mask m, Vec3<Real> origin, Vec3
   appendVec3(origin, m, rays.originX, rays.originY, rays.originZ, out);
   appendVec3(direction, m, rays.directionX, rays.directionY, rays.directionZ, out);
   appendVec3(one, m, paths.throughputR, paths.throughputG, paths.throughputB, out);
-  appendMis<kFeatures>(MisSums<Real>{Real(0), Real(0), Real(0)}, m, paths, out);
+  appendMis<kFeatures>(MisSums<Real>{Real(0), Real(0)}, m, paths, out);
   if constexpr (hasRouletteScale(kFeatures)) append(Real(1), m, paths.rouletteScale, out);
   append(lane, m, paths.lane, out);
   append(UInt(0u), m, paths.light, out);

@@ -23,8 +23,8 @@ constexpr uint32_t kMostPaths = 1u << kPathBits;
 constexpr uint32_t kIterationsPerWave = 1u << (32 - kPathBits);
 
 // independent: every number is independent of every other.
-// sobol: the numbers of one (path, block) are well distributed over the iterations. The light paths of
-//   an iteration are points of one sequence: the numbers of a block are well distributed over paths and iterations.
+// sobol: the numbers of one (path, block) are well distributed over the iterations. The light paths of an iteration are
+//   points of one sequence: the numbers of a block are well distributed over paths and iterations.
 // chain: what Markov chains propose (ChainSamples); no choice of the user's, but part of Metropolis light transport.
 enum class SamplerKind { independent, sobol, chain };
 
@@ -40,7 +40,7 @@ constexpr std::string_view toString(SamplerKind kind) {
 // What the numbers are for; paths of different streams share path indices but no numbers.
 // filter: the place in the pixel that all samples of an iteration share (StageContext::sharedPlace).
 // guide: of camera paths, whether the guide draws, its bin and the place in it (2).
-enum class Stream : uint32_t { camera, light, bootstrap, chain, scene, filter, guide };
+enum class Stream : uint32_t { camera, light, bootstrap, chain, filter = 5, guide };
 
 // Each vertex has four blocks of four numbers; this is the one table of their uses.
 enum class Block : uint32_t {

@@ -47,7 +47,7 @@ struct EmissionRule {
   template <class Real>
   WAVECREST_INLINE Mask counts(UInt lane, Mask active, const MisSums<Real>& mis) const {
     Mask counted = active;
-    if (mergingAlone) counted = active & (mis.dVCM == Real(0)) & (mis.dVM == Real(0));
+    if (mergingAlone) counted = active & (mis.dVCM == Real(0)) & (mis.dVC == Real(0));
     if (depths != nullptr) counted = counted & (gather(depths, select(active, lane, UInt(0u))) == UInt(depth));
     return counted;
   }
@@ -196,7 +196,6 @@ WAVECREST_INLINE void toAreaMeasure(const StageContext<typename P::Storage>& con
       }
     }
     mis.dVC = mis.dVC * inverseCosine;
-    mis.dVM = mis.dVM * inverseCosine;
   }
   mis.dVCM = mis.dVCM * toArea * inverseCosine;
 }

@@ -33,10 +33,7 @@ struct PathVertexLanes {
     details.template forEach<kFeatures>(surfaces, function);
     three(throughput, paths.throughputR, paths.throughputG, paths.throughputB);
     function(mis.dVCM, paths.dVCM);
-    if constexpr (has(kFeatures, kBidirectional)) {
-      function(mis.dVC, paths.dVC);
-      function(mis.dVM, paths.dVM);
-    }
+    if constexpr (has(kFeatures, kBidirectional)) function(mis.dVC, paths.dVC);
     if constexpr (hasRouletteScale(kFeatures)) function(rouletteScale, paths.rouletteScale);
     function(lane, paths.lane);
     function(primitive, vertices.hits.primitive);

@@ -89,8 +89,7 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     if constexpr (!onlyDiffuse(kBsdfs)) {
       if (any(sample.specular)) {
         const auto over = scatterSpecularMis(before, specularJacobian(shading, sample, woCosine));
-        mis = {select(sample.specular, over.dVCM, mis.dVCM), select(sample.specular, over.dVC, mis.dVC),
-               select(sample.specular, over.dVM, mis.dVM)};
+        mis = {select(sample.specular, over.dVCM, mis.dVCM), select(sample.specular, over.dVC, mis.dVC)};
       }
     }
 

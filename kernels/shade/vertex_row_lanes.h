@@ -25,7 +25,7 @@ WAVECREST_INLINE auto makeRows(const StageContext<S>& context, const Wave<S>& wa
   rows.set(0, position.x, position.y, position.z, load(surfaces.offset, i));
   rows.set(1, wi.x, wi.y, wi.z, packTag(materialOf(*context.scene, primitive), edges, wi.x));
   rows.set(2, normal.x, normal.y, normal.z, mis.dVCM);
-  rows.set(3, throughput.x, throughput.y, throughput.z, keptBehind(context.mis, mis));
+  rows.set(3, throughput.x, throughput.y, throughput.z, mis.dVC);
   return rows;
 }
 
@@ -46,7 +46,7 @@ struct RowLanes {
   using Real = typename P::Real;
   ShadingLanes<P, kFeatures> shading;
   Vec3<Real> throughput;
-  Real dVCM, behind;
+  MisSums<Real> mis;
 };
 
 // index: of a row for every lane. columns: what rows do not hold, at the same indices, as Surfaces or LightVertices.
@@ -69,7 +69,7 @@ WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::S
       .material = materialOfTag(back.d),
       .details = readDetails<kFeatures>(columns, normal,
                                         [&](const auto& column) WAVECREST_LAMBDA { return gather(column, at); })};
-  return {shadingOf<P, kFeatures>(scene, vertex), {carried.a, carried.b, carried.c}, side.d, carried.d};
+  return {shadingOf<P, kFeatures>(scene, vertex), {carried.a, carried.b, carried.c}, {side.d, carried.d}};
 }
 
 WAVECREST_SIMD_END

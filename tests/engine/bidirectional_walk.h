@@ -7,7 +7,6 @@
 #pragma once
 
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 
 #include "engine/plan/render_plan.h"
@@ -26,17 +25,6 @@ struct WalkSettings {
   float rouletteBelow = 0;  // of connections
   Precision precision = Precision::floating;
 };
-
-// Strategies that share a path, with their constants (METHODS 5.1).
-inline MisSettings misOf(MisSettings strategies, double sceneRadius, const WalkSettings& settings) {
-  strategies.radius = settings.radius * sceneRadius;
-  strategies.lightPaths = static_cast<double>(settings.lightPaths);
-  const double density = std::numbers::pi * strategies.radius * strategies.radius * strategies.lightPaths;
-  strategies.mergeNorm = 1 / density;
-  strategies.vmWeight = strategies.merge ? density : 0;
-  strategies.vcWeight = strategies.merge && strategies.connect ? 1 / density : 0;
-  return strategies;
-}
 
 // Every strategy by itself: all weights are 1.
 constexpr MisSettings kAlone{.emission = false, .nextEvent = false, .mergeWeights = false};
@@ -78,7 +66,8 @@ class BidirectionalWalk {
     context_.pixels = area_.pixels.data();
     context_.sampler = {SamplerKind::independent, settings.seed, settings.iteration};
     context_.limits = settings.limits;
-    context_.mis = misOf(strategies, compiled_->view.radius, settings);
+    context_.mis =
+        misSettings(strategies, {.first = settings.radius, .scene = compiled_->view.radius}, settings.lightPaths, 0);
     context_.light.grid = PhotonGrid<S>::over(compiled_->view.center, compiled_->view.radius, context_.mis.radius,
                                               static_cast<double>(settings.lightPaths));
     context_.counters = &counters;

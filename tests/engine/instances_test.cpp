@@ -115,7 +115,7 @@ class Bench {
     wave_.paths.claim(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
       wave_.paths.throughputR[i] = wave_.paths.throughputG[i] = wave_.paths.throughputB[i] = 1;
-      wave_.paths.dVCM[i] = wave_.paths.dVC[i] = wave_.paths.dVM[i] = wave_.paths.rouletteScale[i] = 1;
+      wave_.paths.dVCM[i] = wave_.paths.dVC[i] = wave_.paths.rouletteScale[i] = 1;
       wave_.paths.lane[i] = static_cast<uint32_t>(i);
     }
   }
@@ -339,7 +339,7 @@ void bounceWithin(const Setting& setting) {
         wave.rays.directionY[i] = static_cast<S>(rays[i].direction[1]);
         wave.rays.directionZ[i] = static_cast<S>(rays[i].direction[2]);
         wave.paths.throughputR[i] = wave.paths.throughputG[i] = wave.paths.throughputB[i] = 1;
-        wave.paths.dVCM[i] = wave.paths.dVC[i] = wave.paths.dVM[i] = wave.paths.rouletteScale[i] = 1;
+        wave.paths.dVCM[i] = wave.paths.dVC[i] = wave.paths.rouletteScale[i] = 1;
         wave.paths.lane[i] = static_cast<uint32_t>(i);
       }
       std::vector<uint32_t> previous(kPaths, kMiss);

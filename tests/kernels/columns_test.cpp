@@ -214,7 +214,7 @@ TYPED_TEST(WaveTest, eachNeedCostsItsColumns) {
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.rouletteScale = true; }), kReal);
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.visibility = true; }), sizeof(float));
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.connections = true; }),
-            2 * kReal + 3 * sizeof(uint32_t) + sizeof(VertexRow<TypeParam>));
+            kReal + 3 * sizeof(uint32_t) + sizeof(VertexRow<TypeParam>));
   // Position, direction, normal, offset, throughput, dVCM; lane and primitive.
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.bsdfOrder = true; }), 14 * kReal + 2 * sizeof(uint32_t));
 }

@@ -19,7 +19,7 @@ void fill(LightStore<float>& store, size_t first, size_t count) {
   ASSERT_EQ(at, first);
   for (size_t i = first; i < first + count; ++i) {
     store.vertices.place[i] = static_cast<uint32_t>(i) + 7;
-    store.vertices.row[i].behind = static_cast<float>(i) + 0.25f;
+    store.vertices.row[i].dVC = static_cast<float>(i) + 0.25f;
     store.vertices.lane[i] = static_cast<uint32_t>(i);
     store.vertices.row[i].position[0] = static_cast<float>(i) + 0.5f;
   }
@@ -28,7 +28,7 @@ void expectFilled(const LightStore<float>& store, size_t count) {
   ASSERT_EQ(store.vertices.size, count);
   for (size_t i = 0; i < count; ++i) {
     EXPECT_EQ(store.vertices.place[i], i + 7);
-    EXPECT_EQ(store.vertices.row[i].behind, static_cast<float>(i) + 0.25f);
+    EXPECT_EQ(store.vertices.row[i].dVC, static_cast<float>(i) + 0.25f);
     EXPECT_EQ(store.vertices.lane[i], i);
     EXPECT_EQ(store.vertices.row[i].position[0], static_cast<float>(i) + 0.5f);
   }
@@ -89,7 +89,7 @@ TEST(LightStore, collectsTheVerticesOfARangeOfPathsWhateverTheirOrder) {
           if (path >= kPaths || !reaches(path, depth)) continue;
           const size_t at = store.vertices.claim(1);
           store.vertices.lane[at] = static_cast<uint32_t>(lane);
-          store.vertices.row[at].behind = static_cast<float>(100 * depth + path);
+          store.vertices.row[at].dVC = static_cast<float>(100 * depth + path);
         }
         if (parity == 1) diffuse = store.vertices.size - store.firstOf(depth);
       }
@@ -107,7 +107,7 @@ TEST(LightStore, collectsTheVerticesOfARangeOfPathsWhateverTheirOrder) {
           if (!reaches(path, depth)) continue;
           ASSERT_NE(link, kNoIndex);
           const uint32_t vertex = link & kLinkIndex;
-          EXPECT_EQ(collected.vertices.row[vertex].behind, static_cast<float>(100 * depth + path));
+          EXPECT_EQ(collected.vertices.row[vertex].dVC, static_cast<float>(100 * depth + path));
           EXPECT_EQ((link & kOtherLink) == 0, path % 2 == 1);
           link = collected.vertices.next[vertex];
         }
@@ -120,7 +120,7 @@ TEST(LightStore, collectsTheVerticesOfARangeOfPathsWhateverTheirOrder) {
           if (reaches(path, depth)) expected[lane] = static_cast<float>(100 * depth + path);
         }
         for (size_t i = collected.firstOf(depth); i < collected.firstOf(depth + 1); ++i) {
-          EXPECT_TRUE(found.emplace(collected.vertices.lane[i], collected.vertices.row[i].behind).second);
+          EXPECT_TRUE(found.emplace(collected.vertices.lane[i], collected.vertices.row[i].dVC).second);
         }
         EXPECT_EQ(found, expected) << "depth " << depth << ", " << used << " from " << first;
       }

@@ -122,7 +122,7 @@ struct Photons {
                     .normal = {0, 0, 1},
                     .dVCM = 0,
                     .throughput = {1, 1, 1},
-                    .behind = 0};
+                    .dVC = 0};
         const auto at = grid.at(p);
         v.cell[i] = at.cell;
         v.place[i] = at.place;
@@ -147,7 +147,7 @@ struct Photons {
     for (const auto& store : stores) {
       for (size_t i = 0; i < store->vertices.size; ++i) {
         store->vertices.row[i].wi[2] = -1;
-        store->vertices.row[i].behind = std::numeric_limits<S>::infinity();
+        store->vertices.row[i].dVC = std::numeric_limits<S>::infinity();
       }
     }
   }
@@ -180,7 +180,7 @@ void fillWave(Wave<S>& wave, const std::vector<Point3<S>>& vertices) {
     surfaces.offset[i] = 0;
     surfaces.uvU[i] = surfaces.uvV[i] = 0;
     paths.throughputR[i] = paths.throughputG[i] = paths.throughputB[i] = 1;
-    paths.dVCM[i] = paths.dVC[i] = paths.dVM[i] = 0;
+    paths.dVCM[i] = paths.dVC[i] = 0;
     paths.lane[i] = i;
     wave.radiance.red[i] = wave.radiance.green[i] = wave.radiance.blue[i] = 0;
   }

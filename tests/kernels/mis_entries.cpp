@@ -13,12 +13,11 @@ struct Steps {
   using Real = typename P::Real;
 
   static MisSums<Real> loadSums(const MisColumns<S>& sums, size_t i) {
-    return {loadUnaligned(sums.dVCM + i), loadUnaligned(sums.dVC + i), loadUnaligned(sums.dVM + i)};
+    return {loadUnaligned(sums.dVCM + i), loadUnaligned(sums.dVC + i)};
   }
   static void storeSums(const MisSums<Real>& mis, const MisColumns<S>& sums, size_t i) {
     storeUnaligned(mis.dVCM, sums.dVCM + i);
     storeUnaligned(mis.dVC, sums.dVC + i);
-    storeUnaligned(mis.dVM, sums.dVM + i);
   }
 
   static void scatter(const MisSettings& settings, Walk walk, uint32_t depth, size_t count, const S* pdf,
@@ -47,10 +46,9 @@ struct Steps {
       storeUnaligned(behindLens(settings, depth, loadSums(sums, i), loadUnaligned(pdfReverse + i)), out + i);
     }
   }
-  static void merge(const MisSettings& settings, uint32_t depth, size_t count, const MisColumns<S>& sums, const S* pdf,
-                    S* out) {
+  static void merge(const MisSettings& settings, size_t count, const MisColumns<S>& sums, const S* pdf, S* out) {
     for (size_t i = 0; i < count; i += kLanes) {
-      storeUnaligned(behindMerge(settings, depth, loadSums(sums, i), loadUnaligned(pdf + i)), out + i);
+      storeUnaligned(behindMerge(settings, loadSums(sums, i), loadUnaligned(pdf + i)), out + i);
     }
   }
 

@@ -11,7 +11,7 @@ namespace wavecrest {
 
 template <class S>
 struct MisColumns {
-  S *dVCM, *dVC, *dVM;
+  S *dVCM, *dVC;
 };
 
 // Columns are padded to the lane count; the sums are read and written in place.
@@ -24,8 +24,7 @@ struct MisKernels {
                            const MisColumns<S>& sums, const S* pdfReverse, S* out);
   void (*behindLens)(const MisSettings& settings, uint32_t depth, size_t count, const MisColumns<S>& sums,
                      const S* pdfReverse, S* out);
-  void (*behindMerge)(const MisSettings& settings, uint32_t depth, size_t count, const MisColumns<S>& sums,
-                      const S* pdf, S* out);
+  void (*behindMerge)(const MisSettings& settings, size_t count, const MisColumns<S>& sums, const S* pdf, S* out);
 };
 
 struct MisEntries {

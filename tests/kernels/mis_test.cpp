@@ -74,12 +74,11 @@ struct SyntheticPaths {
 
 template <class S>
 struct Sums {
-  Values<S> dVCM, dVC, dVM;
-  MisColumns<S> columns() { return {dVCM.data(), dVC.data(), dVM.data()}; }
+  Values<S> dVCM, dVC;
+  MisColumns<S> columns() { return {dVCM.data(), dVC.data()}; }
   void divide(size_t path, S area, S cosine) {
     dVCM[path] *= area / cosine;
     dVC[path] /= cosine;
-    dVM[path] /= cosine;
   }
 };
 
@@ -106,7 +105,6 @@ void scatter(const MisKernels<S>& kernels, const MisSettings& mis, uint32_t dept
     if (v.specular[path] == 0) continue;
     sums.dVCM[path] = over.dVCM[path];
     sums.dVC[path] = over.dVC[path];
-    sums.dVM[path] = over.dVM[path];
   }
 }
 
@@ -120,7 +118,6 @@ std::vector<Sums<S>> walkLight(const MisKernels<S>& kernels, const MisSettings& 
     const S n0 = p.infinite[path] != 0 ? S(1) : p.x[0].normalToCamera[path];
     sums.dVCM[path] = mis.nextEvent ? p.direct[path] / emission : S(0);
     sums.dVC[path] = p.delta[path] != 0 || !mis.emission ? S(0) : n0 / emission;
-    sums.dVM[path] = sums.dVC[path] * static_cast<S>(mis.vcWeight);
   }
   for (size_t i = 1; i < p.k(); ++i) {
     for (size_t path = 0; path < kMisPaths; ++path) {
@@ -140,7 +137,7 @@ std::vector<Sums<S>> walkCamera(const MisKernels<S>& kernels, const MisSettings&
   Sums<S> sums;
   for (size_t path = 0; path < kMisPaths; ++path) {
     sums.dVCM[path] = mis.camera ? static_cast<S>(mis.lightPaths) / p.camera[path] : S(0);
-    sums.dVC[path] = sums.dVM[path] = 0;
+    sums.dVC[path] = 0;
   }
   for (size_t i = p.k(); i-- > 0;) {
     for (size_t path = 0; path < kMisPaths; ++path) {
@@ -163,10 +160,8 @@ std::vector<double> weights(const MisKernels<S>& kernels, const MisSettings& mis
   const auto lightDepth = [&](size_t i) { return static_cast<uint32_t>(i); };
   const auto cameraDepth = [&](size_t i) { return static_cast<uint32_t>(k - i); };
   if (merge) {
-    kernels.behindMerge(mis, lightDepth(s), kMisPaths, light[s].columns(), p.x[s].pdfToLight.data(),
-                        behindLight.data());
-    kernels.behindMerge(mis, cameraDepth(s), kMisPaths, camera[s].columns(), p.x[s].pdfToCamera.data(),
-                        behindCamera.data());
+    kernels.behindMerge(mis, kMisPaths, light[s].columns(), p.x[s].pdfToLight.data(), behindLight.data());
+    kernels.behindMerge(mis, kMisPaths, camera[s].columns(), p.x[s].pdfToCamera.data(), behindCamera.data());
   } else {
     if (s >= 2 && s == k) {
       kernels.behindLens(mis, lightDepth(s - 1), kMisPaths, light[s - 1].columns(), p.x[s - 1].pdfToLight.data(),
@@ -291,7 +286,7 @@ std::vector<StrategySet> strategySets() {
   for (StrategySet& set : sets) {
     const double density = 0.37 * 1234;  // pi r^2 N_L
     set.mis.lightPaths = 1234;
-    set.mis.vmWeight = set.mis.merge ? density : 0;
+    if (set.mis.merge) set.mis.vmWeight = set.mis.connect ? density : 1;
     set.mis.vcWeight = set.mis.merge && set.mis.connect ? 1 / density : 0;
   }
   return sets;
