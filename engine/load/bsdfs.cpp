@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "engine/load/color.h"
 #include "engine/load/ior_table.h"
@@ -13,6 +14,26 @@ namespace wavecrest {
 
 namespace {
 
+// The least roughness of Mitsuba, below which it does not evaluate its microfacet model.
+constexpr double kLeastAlpha = 1e-4;
+
+// " (effect)" for messages with --lenient, which says what stands in for what is left out; empty without it.
+std::string onlyLenient(const LoadContext& context, const std::string& effect) {
+  return context.options.lenient ? " (" + effect + ")" : "";
+}
+
+// The mean of all values of a texture, of a checkerboard that of its two colours.
+double meanValueOf(const Texture& texture) {
+  std::vector<double> values;
+  if (const auto* board = std::get_if<CheckerboardTexture>(&texture.kind)) {
+    for (const Rgb& color : {board->color0, board->color1}) values.insert(values.end(), color.begin(), color.end());
+  } else {
+    const std::vector<float>& pixels = std::get<BitmapTexture>(texture.kind).bitmap->pixels;
+    values.assign(pixels.begin(), pixels.end());
+  }
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(std::max<size_t>(values.size(), 1));
+}
+
 // The microfacet distribution, which is Beckmann by default.
 Distribution readDistribution(LoadContext& context, Parameters& parameters) {
   const std::string name = toLower(parameters.string("distribution", "beckmann"));
@@ -22,7 +43,7 @@ Distribution readDistribution(LoadContext& context, Parameters& parameters) {
   if (name == "phong" || name == "as") {  // of 0.6, whose exponent for an alpha makes it as wide as Beckmann's
     context.unsupported(parameters.locationOf("distribution"),
                         "distribution " + inQuotes(name) + " of Mitsuba 0.6 is not supported" +
-                            (context.options.lenient ? " (replaced by beckmann)" : "") +
+                            onlyLenient(context, "replaced by beckmann") +
                             "; expected beckmann of the same alpha, the nearest, or ggx");
     return Distribution::beckmann;
   }
@@ -37,10 +58,9 @@ struct Roughness {
 };
 // Reads `alpha`, or `alpha_u` and `alpha_v`. If the two are equal, the result is isotropic.
 Roughness readRoughness(LoadContext& context, Parameters& parameters) {
-  constexpr double kSmallest = 1e-4;  // Mitsuba's, below which its microfacet model is not evaluated
   const auto read = [&](const char* name) {
     TexturedFloat alpha = readTexturedFloat(context, parameters, name, 0.1);
-    if (alpha.texture == kNone) alpha.value = std::max(alpha.value, kSmallest);
+    if (alpha.texture == kNone) alpha.value = std::max(alpha.value, kLeastAlpha);
     return alpha;
   };
   // alpha_u and alpha_v come together, and exclude alpha.
@@ -143,9 +163,10 @@ bool transmits(const Material& material, const Scene& scene) {
          std::ranges::any_of(blend->materials, [&](uint32_t part) { return transmits(scene.materials[part], scene); });
 }
 
-// For adapters that a material can have only once.
-[[noreturn]] void failTwice(const Parameters& parameters) {
-  throw LoadError(parameters.location(), parameters.describe() + " is nested in another one; expected it once");
+// For adapters that a material can have only once. With --lenient the inner one stays.
+void refuseTwice(LoadContext& context, const Parameters& parameters) {
+  context.unsupported(parameters.location(), parameters.describe() + " is nested in another one" +
+                                                 onlyLenient(context, "left out") + "; expected it once");
 }
 
 }  // namespace
@@ -194,17 +215,37 @@ void readRoughPlastic(LoadContext& context, Parameters& parameters, Material& ma
   Plastic plastic = readAnyPlastic(context, parameters);
   plastic.distribution = readDistribution(context, parameters);
   plastic.alpha = readAlpha(context, parameters);
-  // As in Mitsuba, where roughplastic takes only a number.
+  // As in Mitsuba 3, where roughplastic takes only a number.
   if (plastic.alpha.texture != kNone) {
-    throw LoadError(parameters.locationOf("alpha"), "alpha of roughplastic is a texture; expected one number");
+    context.unsupported(
+        parameters.locationOf("alpha"),
+        "alpha of roughplastic is a texture" + onlyLenient(context, "replaced by its mean") + "; expected one number");
+    plastic.alpha = {.value = std::max(meanValueOf(context.scene.textures[plastic.alpha.texture]), kLeastAlpha)};
   }
   material.kind = plastic;
 }
 
+namespace {
+
+// The exponent of `phong`, which in Mitsuba 0.6 may be a texture.
+double readExponent(LoadContext& context, Parameters& parameters) {
+  const XmlElement* const element = parameters.element("exponent");
+  if (element == nullptr || element->tag != "texture") return parameters.positiveReal("exponent", 30);
+  context.unsupported(
+      parameters.locationOf("exponent"),
+      "exponent of phong is a texture" + onlyLenient(context, "replaced by its mean") + "; expected one number");
+  const TexturedFloat exponent = readTexturedFloat(context, parameters, "exponent", 30);
+  const double mean =
+      exponent.texture == kNone ? exponent.value : meanValueOf(context.scene.textures[exponent.texture]);
+  return std::max(mean, 1e-4);
+}
+
+}  // namespace
+
 void readPhong(LoadContext& context, Parameters& parameters, Material& material) {
   material.kind = Phong{.diffuseReflectance = readTexturedRgb(context, parameters, "diffuse_reflectance", 0.5),
                         .specularReflectance = readTexturedRgb(context, parameters, "specular_reflectance", 0.2),
-                        .exponent = parameters.positiveReal("exponent", 30)};
+                        .exponent = readExponent(context, parameters)};
 }
 
 namespace {
@@ -212,8 +253,8 @@ namespace {
 // For a BSDF of 0.6 that is not supported: an error that names the nearest one, or with --lenient a warning.
 void replaceBsdf(LoadContext& context, const Parameters& parameters, const std::string& nearest) {
   context.unsupported(parameters.location(), parameters.describe() + " of Mitsuba 0.6 is not supported" +
-                                                 (context.options.lenient ? " (replaced by the nearest)" : "") +
-                                                 "; expected " + nearest + ", the nearest");
+                                                 onlyLenient(context, "replaced by the nearest") + "; expected " +
+                                                 nearest + ", the nearest");
 }
 
 }  // namespace
@@ -343,18 +384,24 @@ void readMask(LoadContext& context, Parameters& parameters, Material& material) 
   } else if (material.opacity->texture == kNone && opacity.texture == kNone) {
     material.opacity->value *= opacity.value;
   } else {
-    failTwice(parameters);
+    refuseTwice(context, parameters);
   }
 }
 
 // Reads the parameters that `bumpmap` and `normalmap` share. The nested BSDF must be in `material` already. In files of
-// 0.4 to 0.6, which know neither of the two, mapped normals stay as they are and darken nothing.
-void readNormalMapping(Parameters& parameters, Material& material) {
-  if (material.hasMap()) failTwice(parameters);
+// 0.4 to 0.6, which know neither of the two, mapped normals stay as they are and darken nothing. Returns whether the
+// map applies: not if the nested BSDF has one.
+bool readNormalMapping(LoadContext& context, Parameters& parameters, Material& material) {
   const bool byDefault = !parameters.object().legacy;
-  material.normalMapping = {.flipInvalidNormals = parameters.boolean("flip_invalid_normals", byDefault),
-                            .shadowing = parameters.boolean("use_shadowing_function", byDefault),
-                            .aroundTwoSided = material.twoSided};
+  const NormalMapping mapping{.flipInvalidNormals = parameters.boolean("flip_invalid_normals", byDefault),
+                              .shadowing = parameters.boolean("use_shadowing_function", byDefault),
+                              .aroundTwoSided = material.twoSided};
+  if (material.hasMap()) {
+    refuseTwice(context, parameters);
+    return false;
+  }
+  material.normalMapping = mapping;
+  return true;
 }
 
 // Whether a texture has steps and no slopes between them.
@@ -364,16 +411,16 @@ bool isFlat(const Texture& texture) {
 }
 
 void readBumpMap(LoadContext& context, Parameters& parameters, Material& material) {
-  // Heights are numbers, so a coloured bitmap is replaced by its luminance.
+  // Heights are the luminances of a coloured bitmap, in all versions of Mitsuba.
   const uint32_t heights = textureOf(context, parameters.onlyObject("texture"));
-  const uint32_t texture = scalarTextureOf(context, heights, !parameters.object().legacy);
+  const uint32_t texture = scalarTextureOf(context, heights, true);
   if (isFlat(context.scene.textures[texture])) {
     context.note(parameters.location(), "bumpmap of a checkerboard, or of a bitmap with filter_type nearest",
                  "no bumps: heights have steps and no slopes");
   }
   const double scale = parameters.real("scale", 1);
   readBsdf(context, parameters.onlyObject("bsdf"), material);
-  readNormalMapping(parameters, material);
+  if (!readNormalMapping(context, parameters, material)) return;
   material.bumpTexture = texture;
   material.bumpScale = scale;
 }
@@ -385,7 +432,7 @@ void readNormalMap(LoadContext& context, Parameters& parameters, Material& mater
     throw LoadError(parameters.location(), "normalmap has no texture; expected one with name=\"normalmap\"");
   }
   readBsdf(context, parameters.onlyObject("bsdf"), material);
-  readNormalMapping(parameters, material);
+  if (!readNormalMapping(context, parameters, material)) return;
   material.normalTexture = texture;
 }
 

@@ -22,7 +22,7 @@ struct LoadContext {
   // An object that is referenced many times is read once.
   std::map<const XmlElement*, uint32_t> materials{};
   std::map<const XmlElement*, uint32_t> textures{};
-  // What stands in for a texture where a number is asked for, by the texture and by whether colours are exchanged.
+  // What stands in for a texture where a number is asked for, by the texture and by asMitsuba3 (scalarTextureOf).
   std::map<std::pair<uint32_t, bool>, uint32_t> scalarTextures{};
   std::set<const XmlElement*> reading{};                           // objects being read, to find reference cycles
   std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};  // by path and colour treatment

@@ -84,8 +84,10 @@ void readFilm(LoadContext& context, const XmlElement* element) {
     film.height = static_cast<uint32_t>(parameters.integer("height", 576, 1, kLargestSide));
     readCrop(parameters, film);
     // How the file is stored is the command line's business.
-    parameters.ignore({"file_format", "pixel_format", "component_format", "banner", "compensate", "sample_border",
-                       "high_quality_edges", "attach_log", "variable", "digits", "has_alpha"});
+    parameters.ignore({"file_format", "pixel_format", "component_format", "banner", "compensate", "attach_log",
+                       "variable", "digits", "has_alpha"});
+    // Filters always reach over the border (METHODS.md 1.7), as they do in Mitsuba with one of these.
+    parameters.ignore({"sample_border", "high_quality_edges"});
     parameters.leaveOut({"gamma", "exposure", "tonemap_method", "key", "burn"},
                         "left out: images are written linear, or with the sRGB curve");
     // At most one reconstruction filter. Kinds with negative lobes are replaced by a gaussian.
@@ -111,6 +113,7 @@ void readFilm(LoadContext& context, const XmlElement* element) {
     const auto rounded = [](double side) { return static_cast<uint32_t>(std::max(side + 0.5, 1.0)); };
     film.width = width != 0 ? width : rounded(height * aspect);
     film.height = height != 0 ? height : rounded(width / aspect);
+    if (film.isCropped()) context.note(element->location(), "crop window", "left out beside a size from outside");
     film.cropX = film.cropY = film.cropWidth = film.cropHeight = 0;
   }
   // Check the final size.
@@ -133,7 +136,9 @@ void readSampler(LoadContext& context, const XmlElement* element) {
     context.note(element->location(), "sampler " + inQuotes(type),
                  "the command line chooses the sampler (--sampler independent or sobol)");
   }
-  parameters.takeOthers();  // how that sampler makes its numbers
+  // How that sampler makes its numbers.
+  parameters.ignore({"seed", "jitter", "strength", "dimension", "scramble"});
+  parameters.finish();
 }
 
 }  // namespace wavecrest

@@ -176,33 +176,34 @@ bool isGrey(const Rgb& color) { return color[0] == color[1] && color[1] == color
 // The mean of the channels. A grey value is taken as it is, since the sum would round it.
 double meanOf(const Rgb& color) { return isGrey(color) ? color[0] : (color[0] + color[1] + color[2]) / 3; }
 
-// A bitmap of three channels as one of one channel.
-Bitmap luminanceOf(const Bitmap& colour) {
+// A bitmap of three channels as one of one channel: that of the luminances, or of the means.
+Bitmap greyOf(const Bitmap& colour, bool luminances) {
   Bitmap grey{.width = colour.width, .height = colour.height, .channels = 1, .pixels = {}};
   grey.pixels.reserve(colour.pixels.size() / 3);
   for (size_t i = 0; i + 2 < colour.pixels.size(); i += 3) {
-    grey.pixels.push_back(static_cast<float>(luminance(colour.pixels[i], colour.pixels[i + 1], colour.pixels[i + 2])));
+    const double r = colour.pixels[i], g = colour.pixels[i + 1], b = colour.pixels[i + 2];
+    grey.pixels.push_back(static_cast<float>(luminances ? luminance(r, g, b) : meanOf({r, g, b})));
   }
   return grey;
 }
 
 }  // namespace
 
-// Where a number is asked for, Mitsuba reads a colour bitmap's luminance and a colour's mean. Mitsuba 3 also swaps the
-// colours of a checkerboard (3.9, seen in its images).
-Texture scalarTexture(Texture texture, bool swaps) {
+// Where a number is asked for, Mitsuba 3 reads the luminance of a colour bitmap, and the means of a checkerboard's
+// colours, which it swaps (3.9, seen in its images). Mitsuba 0.6 reads means.
+Texture scalarTexture(Texture texture, bool asMitsuba3) {
   if (auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
-    if (swaps) std::swap(board->color0, board->color1);
+    if (asMitsuba3) std::swap(board->color0, board->color1);
     for (Rgb* color : {&board->color0, &board->color1}) color->fill(meanOf(*color));
   } else {
     auto& bitmap = std::get<BitmapTexture>(texture.kind).bitmap;
-    if (bitmap->channels != 1) bitmap = std::make_shared<Bitmap>(luminanceOf(*bitmap));
+    if (bitmap->channels != 1) bitmap = std::make_shared<Bitmap>(greyOf(*bitmap, asMitsuba3));
   }
   return texture;
 }
 
-uint32_t scalarTextureOf(LoadContext& context, uint32_t index, bool swaps) {
-  const std::pair<uint32_t, bool> key{index, swaps};
+uint32_t scalarTextureOf(LoadContext& context, uint32_t index, bool asMitsuba3) {
+  const std::pair<uint32_t, bool> key{index, asMitsuba3};
   if (const auto known = context.scalarTextures.find(key); known != context.scalarTextures.end()) {
     return known->second;
   }
@@ -212,7 +213,7 @@ uint32_t scalarTextureOf(LoadContext& context, uint32_t index, bool swaps) {
   if (bitmap != nullptr && bitmap->bitmap->channels == 1) return index;
   // Any other texture gets a scalar version in the scene, once.
   const uint32_t scalar = static_cast<uint32_t>(context.scene.textures.size());
-  context.scene.textures.push_back(scalarTexture(texture, swaps));
+  context.scene.textures.push_back(scalarTexture(texture, asMitsuba3));
   context.scalarTextures.emplace(key, scalar);
   return scalar;
 }

@@ -19,10 +19,10 @@ uint32_t emissionTextureOf(LoadContext& context, const XmlElement& texture, cons
 // A parameter that is a colour or a texture; TexturedRgb::texture says which.
 TexturedRgb readTexturedRgb(LoadContext& context, Parameters& parameters, std::string_view name, double fallback);
 TexturedRgb readTexturedEmission(LoadContext& context, Parameters& parameters, std::string_view name);
-// The texture that stands in for another where a number is asked for instead of a colour. swaps: a checkerboard's
-// colours are exchanged, as Mitsuba 3 does and 0.6 does not.
-uint32_t scalarTextureOf(LoadContext& context, uint32_t index, bool swaps);
-Texture scalarTexture(Texture texture, bool swaps);
+// The texture that stands in for another where a number is asked for instead of a colour. asMitsuba3: a bitmap gives
+// luminances, and a checkerboard's colours are exchanged; otherwise a bitmap gives means, as in Mitsuba 0.6.
+uint32_t scalarTextureOf(LoadContext& context, uint32_t index, bool asMitsuba3);
+Texture scalarTexture(Texture texture, bool asMitsuba3);
 
 TexturedFloat readTexturedFloat(LoadContext& context, Parameters& parameters, std::string_view name, double fallback);
 // Whether the colour or the texture that a number is read from is anywhere not grey.

@@ -12,7 +12,9 @@ namespace wavecrest {
 // `attribute` is the name of one to read along, or empty.
 TriangleSoup readPly(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where,
                      const std::string& attribute = {});
-TriangleSoup readObj(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where);
+// separateMeshes: each group (g) and each material (usemtl) has vertices of its own.
+TriangleSoup readObj(const std::filesystem::path& path, bool flipTexCoords, bool separateMeshes,
+                     const SourceLocation& where);
 
 // Mesh `index` of a serialized file in memory, whose name errors give.
 struct SerializedMesh {

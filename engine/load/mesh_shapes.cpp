@@ -20,7 +20,8 @@ MeshPlacement readPlacement(Parameters& parameters, const Matrix4& toWorld) {
                                 .faceNormals = parameters.boolean("face_normals", false),
                                 .flipNormals = parameters.boolean("flip_normals", false)};
   if (!placement.faceNormals) {
-    parameters.leaveOut({"max_smooth_angle"}, "normals are smoothed over edges of any angle");
+    parameters.leaveOut({"max_smooth_angle"},
+                        "normals of the file are kept, others are smoothed over edges of any angle");
   }
   parameters.ignore({"max_smooth_angle"});
   return placement;
@@ -63,6 +64,10 @@ MeshFile meshFileOf(const LoadContext& context, Parameters& parameters) {
                 .where = {}};
   // As in Mitsuba, the v of obj files is flipped by default.
   file.flipTexCoords = parameters.boolean("flip_tex_coords", file.kind == MeshFile::Kind::obj);
+  // Mitsuba 0.6 makes a mesh of each group and each material, and smooths normals within it.
+  if (file.kind == MeshFile::Kind::obj && parameters.object().legacy) {
+    file.separateMeshes = !parameters.boolean("collapse", false);
+  }
   if (file.kind == MeshFile::Kind::serialized) {
     file.index = static_cast<uint32_t>(parameters.integer("shape_index", 0, 0, kMostMeshes));
   }
@@ -74,7 +79,7 @@ MeshFile meshFileOf(const LoadContext& context, Parameters& parameters) {
 }
 
 TriangleSoup readMeshFile(const MeshFile& file) {
-  return file.kind == MeshFile::Kind::obj ? readObj(file.path, file.flipTexCoords, file.where)
+  return file.kind == MeshFile::Kind::obj ? readObj(file.path, file.flipTexCoords, file.separateMeshes, file.where)
                                           : readPly(file.path, file.flipTexCoords, file.where);
 }
 

@@ -12,7 +12,8 @@ struct MeshFile {
   std::filesystem::path path;
   SourceLocation where;  // of the name in the XML
   bool flipTexCoords = false;
-  uint32_t index = 0;  // of the mesh within a serialized file
+  bool separateMeshes = false;  // the groups of an OBJ file (readObj)
+  uint32_t index = 0;           // of the mesh within a serialized file
 };
 
 MeshFile meshFileOf(const LoadContext& context, Parameters& parameters);

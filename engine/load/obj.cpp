@@ -1,4 +1,5 @@
-// Wavefront OBJ: v, vt, vn and f lines; every other line (groups, materials, smoothing) is skipped as in Mitsuba 3.
+// Wavefront OBJ: v, vt, vn and f lines; every other line (groups, materials, smoothing) is skipped as in Mitsuba 3. For
+// files of 0.4 to 0.6 each group and each material begins a mesh that shares no vertices with the others.
 #include <limits>
 #include <unordered_map>
 
@@ -27,7 +28,8 @@ struct CornerHash {
 // Reads a file line by line. A face can refer only to positions, normals and coordinates above it.
 class ObjReader {
  public:
-  ObjReader(TextScanner scanner, bool flipTexCoords) : scanner_(scanner), flipTexCoords_(flipTexCoords) {}
+  ObjReader(TextScanner scanner, bool flipTexCoords, bool separateMeshes)
+      : scanner_(scanner), flipTexCoords_(flipTexCoords), separateMeshes_(separateMeshes) {}
 
   TriangleSoup read() {
     // Numbers that follow on a line, such as the colour of a vertex, are skipped with the rest of the line.
@@ -47,6 +49,9 @@ class ObjReader {
         hasLibrary_ = true;
       } else if (scanner_.takeWord("usemtl")) {
         usesLibrary_ = hasLibrary_;
+        beginMesh();
+      } else if (scanner_.takeWord("g")) {
+        beginMesh();
       }
       scanner_.skipLine();
     }
@@ -54,6 +59,11 @@ class ObjReader {
   }
 
  private:
+  // Corners that follow get vertices of their own, over which normals are smoothed.
+  void beginMesh() {
+    if (separateMeshes_) vertices_.clear();
+  }
+
   // The next N numbers of the line.
   template <size_t N>
   std::array<float, N> readVector() {
@@ -146,7 +156,7 @@ class ObjReader {
   }
 
   TextScanner scanner_;
-  bool flipTexCoords_, hasUvs_ = false, hasNormals_ = false, hasLibrary_ = false, usesLibrary_ = false;
+  bool flipTexCoords_, separateMeshes_, hasUvs_ = false, hasNormals_ = false, hasLibrary_ = false, usesLibrary_ = false;
   uint64_t droppedFaces_ = 0;
   std::vector<Float3> positions_, normals_;
   std::vector<Float2> uvs_;
@@ -161,12 +171,13 @@ class ObjReader {
 
 }  // namespace
 
-TriangleSoup readObj(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where) {
+TriangleSoup readObj(const std::filesystem::path& path, bool flipTexCoords, bool separateMeshes,
+                     const SourceLocation& where) {
   std::vector<char> bytes = readInputFile(path, where);
   // TextScanner stops at newlines only.
   bytes.push_back('\n');
   const std::string file = path.string();
-  return ObjReader(TextScanner({bytes.data(), bytes.size()}, file), flipTexCoords).read();
+  return ObjReader(TextScanner({bytes.data(), bytes.size()}, file), flipTexCoords, separateMeshes).read();
 }
 
 }  // namespace wavecrest

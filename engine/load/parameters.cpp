@@ -20,6 +20,13 @@ constexpr std::array<std::string_view, 12> kValueTags = {"boolean", "integer", "
 // A tag as files write it, for messages.
 std::string article(std::string_view tag) { return "<" + std::string(tag) + ">"; }
 
+// What an element of Mitsuba 0.6 asks for that wavecrest lacks altogether, for messages; empty of others.
+std::string_view lackingSupport(std::string_view tag) {
+  if (tag == "subsurface") return "subsurface scattering is not supported; expected surfaces only";
+  if (tag == "animation") return "motion is not supported; expected a <transform>";
+  return {};
+}
+
 // A value has a name, and only a <transform> has children.
 void checkValueElement(const XmlElement& element) {
   if (element.get("name").empty()) {
@@ -43,6 +50,9 @@ Parameters::Parameters(LoadContext& context, const XmlElement& object) : context
     if (isValue) {
       checkValueElement(child);
     } else if (child.tag == "alias") {
+      continue;
+    } else if (const std::string_view lacking = lackingSupport(child.tag); !lacking.empty()) {
+      context.unsupported(child.location(), article(child.tag) + " in " + describe() + ": " + std::string(lacking));
       continue;
     } else if (child.tag != "ref" && !child.isObject()) {
       context.unsupported(child.location(), "unknown element " + article(child.tag) + " in " + describe() +
@@ -225,6 +235,16 @@ std::string Parameters::takeOthers() {
     names += (names.empty() ? "" : ", ") + (child.name.empty() ? article(child.target->tag) : std::string(child.name));
   }
   return names;
+}
+
+std::string Parameters::takeOthers(std::span<const std::string_view> names) {
+  std::string taken;
+  for (Child& child : children_) {
+    if (child.used || std::ranges::find(names, child.name) == names.end()) continue;
+    child.used = true;
+    taken += (taken.empty() ? "" : ", ") + std::string(child.name);
+  }
+  return taken;
 }
 
 // The first child that is left over is an error. With --lenient there is a warning for each.

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,8 +44,9 @@ class Parameters {
   void ignore(std::initializer_list<std::string_view> names);
   // Accepts parameters that may change it a little; a note says so where one is given.
   void leaveOut(std::initializer_list<std::string_view> names, const std::string& effect);
-  // Accepts what is left and returns its names, "a, b", for a note.
+  // Accepts what is left, or of that only parameters of these names, and returns its names, "a, b", for a note.
   std::string takeOthers();
+  std::string takeOthers(std::span<const std::string_view> names);
   // Reports what is left over.
   void finish();
 

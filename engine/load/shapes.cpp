@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "engine/load/bsdfs.h"
 #include "engine/load/emitters.h"
 #include "engine/load/materials.h"
 #include "engine/load/mesh_attributes.h"
@@ -61,6 +62,26 @@ void attachAreaLight(LoadContext& context, const XmlElement& element, uint32_t s
   shape.emitter = static_cast<uint32_t>(context.scene.emitters.size());
   context.scene.emitters.push_back(
       {.kind = readAreaEmitter(context, element, shapeIndex), .source = element.location()});
+}
+
+// Whether a shape that has neither a BSDF nor a light is the boundary of a medium in a file of 0.4 to 0.6, where such a
+// boundary does not change light. Reports the medium.
+bool isNullBoundary(LoadContext& context, Parameters& parameters) {
+  if (!parameters.object().legacy || parameters.objects("medium").empty()) return false;
+  context.unsupported(parameters.location(), "<medium> in " + parameters.describe() +
+                                                 ": light transport in media is not supported" +
+                                                 (context.options.lenient ? " (left out; its boundary is null)" : "") +
+                                                 "; expected surfaces only");
+  return true;
+}
+
+// The index of a new material of BSDF `null`.
+uint32_t addNullMaterial(LoadContext& context, Parameters& shape) {
+  Material material;
+  material.source = shape.location();
+  readNull(context, shape, material);
+  context.scene.materials.push_back(std::move(material));
+  return static_cast<uint32_t>(context.scene.materials.size() - 1);
 }
 
 // The index of a group in the scene; at its first instance its shapes are read.
@@ -130,6 +151,7 @@ void addShape(LoadContext& context, const XmlElement& element) {
   const OwnMaterials ownMaterials(context);
   const XmlElement* bsdf = singleChild(parameters, "bsdf");
   const XmlElement* light = singleChild(parameters, "emitter");
+  const bool isNull = bsdf == nullptr && light == nullptr && isNullBoundary(context, parameters);
   ignoreCommonParameters(parameters);
   parameters.finish();
 
@@ -148,7 +170,9 @@ void addShape(LoadContext& context, const XmlElement& element) {
     throw LoadError(light->location(), "light inside a shapegroup; expected instances without lights");
   }
   // Add the shape, with its material and its light.
-  shape.material = bsdf ? materialOf(context, *bsdf) : defaultMaterial(context, light != nullptr);
+  shape.material = bsdf     ? materialOf(context, *bsdf)
+                   : isNull ? addNullMaterial(context, parameters)
+                            : defaultMaterial(context, light != nullptr);
   if (light) attachAreaLight(context, *light, static_cast<uint32_t>(context.scene.shapes.size()), shape);
   shape.group = context.shapeGroup;
   context.scene.shapes.push_back(std::move(shape));

@@ -94,10 +94,18 @@ std::shared_ptr<const Bitmap> oneChannel(const Bitmap& colors, size_t channel) {
 }
 
 // The channel of the bitmap that the parameter `channel` names; the whole bitmap if it is absent.
-std::shared_ptr<const Bitmap> readChannel(Parameters& parameters, const std::shared_ptr<const Bitmap>& bitmap) {
+std::shared_ptr<const Bitmap> readChannel(LoadContext& context, Parameters& parameters,
+                                          const std::shared_ptr<const Bitmap>& bitmap) {
   const std::string name = parameters.string("channel", "");
   if (name.empty() || bitmap->channels == 1) return bitmap;
   constexpr std::string_view kNames = "rgb";
+  // Alpha is not read from files. What it mostly says is how opaque a surface is.
+  if (name == "a") {
+    context.unsupported(parameters.locationOf("channel"),
+                        "channel \"a\" of a bitmap is not supported" +
+                            std::string(context.options.lenient ? " (replaced by 1)" : "") + "; expected r, g or b");
+    return std::make_shared<Bitmap>(Bitmap{.width = 1, .height = 1, .channels = 1, .pixels = {1}});
+  }
   const size_t channel = kNames.find(name);
   if (name.size() != 1 || channel == std::string_view::npos) {
     throw LoadError(parameters.locationOf("channel"),
@@ -138,7 +146,7 @@ Texture readBitmapTexture(LoadContext& context, Parameters& parameters) {
   const std::string filename = parameters.requiredString("filename");
   texture.bitmap =
       readBitmap(context, context.resolvePath(filename, parameters.object()), raw, parameters.locationOf("filename"));
-  texture.bitmap = readChannel(parameters, texture.bitmap);
+  texture.bitmap = readChannel(context, parameters, texture.bitmap);
   return {.kind = std::move(texture), .toUv = readToUv(parameters)};
 }
 

@@ -87,6 +87,13 @@ class Convert(CommandTest):
         result = self.run_wavecrest("convert", "scene.xml", "-o", "out.xml")
         self.assertRegex(result.stderr, r'scene\.xml:2: bsdf "phong": .*Mitsuba 3 does not know')
 
+    def test_what_lenient_leaves_out_is_not_in_the_file(self):
+        fog = '<shape type="cube"><medium type="homogeneous" name="interior"/></shape>'
+        self.write("fog.xml", f'<scene version="0.6.0"><sensor type="perspective"/><emitter type="constant"/>{fog}</scene>')
+        self.run_wavecrest("convert", "fog.xml", "-o", "read.xml", expect=INPUT)
+        self.run_wavecrest("convert", "fog.xml", "--lenient", "-o", "read.xml")
+        self.render("--spp", "1", "-o", "a.pfm", scene="read.xml")
+
     def test_a_scene_that_cannot_be_read_writes_nothing(self):
         self.write("scene.xml", "<scene")
         self.run_wavecrest("convert", "scene.xml", "-o", "out.xml", expect=INPUT)

@@ -432,5 +432,32 @@ TEST(Bsdf, MistakesAreErrors) {
   expectBsdfError(R"(<bsdf type="diffuse"/><bsdf type="diffuse"/>)", "contains 2 objects <bsdf>");
 }
 
+TEST(Bsdf, LenientGoesOnWithTheMeanOfATextureAndTheInnerOfTwoAdapters) {
+  const auto sceneOf = [](const std::string& bsdf) {
+    Scene scene = loadBody("<shape type=\"sphere\">" + bsdf + "</shape>", {.lenient = true});
+    EXPECT_EQ(scene.warnings.size(), 1u) << bsdf;
+    return scene;
+  };
+  // The colours of a checkerboard are 0.4 and 0.2.
+  const auto textured = [&](const std::string& type, const std::string& name) {
+    return sceneOf("<bsdf type=\"" + type + R"("><texture type="checkerboard" name=")" + name + "\"/></bsdf>");
+  };
+  const TexturedFloat alpha = std::get<Plastic>(textured("roughplastic", "alpha").materials.at(0).kind).alpha;
+  EXPECT_NEAR(alpha.value, 0.3, 1e-12);
+  EXPECT_EQ(alpha.texture, kNone);
+  EXPECT_NEAR(std::get<Phong>(textured("phong", "exponent").materials.at(0).kind).exponent, 0.3, 1e-12);
+  const auto mask = [](const std::string& opacity, const std::string& inner) {
+    return R"(<bsdf type="mask">)" + opacity + inner + "</bsdf>";
+  };
+  const std::string inner = mask(R"(<float name="opacity" value="0.25"/>)", R"(<bsdf type="diffuse"/>)");
+  const Scene masked = sceneOf(mask(R"(<texture type="checkerboard" name="opacity"/>)", inner));
+  EXPECT_EQ(masked.materials.at(0).opacity.value().value, 0.25);
+  const auto map = [](const std::string& scale, const std::string& nested) {
+    return R"(<bsdf type="bumpmap"><texture type="checkerboard"/><float name="scale" value=")" + scale + "\"/>" +
+           nested + "</bsdf>";
+  };
+  EXPECT_EQ(sceneOf(map("2", map("3", R"(<bsdf type="diffuse"/>)"))).materials.at(0).bumpScale, 3);
+}
+
 }  // namespace
 }  // namespace wavecrest

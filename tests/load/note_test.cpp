@@ -38,12 +38,18 @@ TEST(Notes, EqualOnesAreCounted) {
   const Scene scene = loadBody(folder, shape + shape);
   ASSERT_EQ(scene.notes.size(), 1u);
   EXPECT_EQ(scene.notes[0].count, 2u);
+  EXPECT_EQ(scene.notes[0].effect, "normals of the file are kept, others are smoothed over edges of any angle");
 }
 
 TEST(Notes, IntegratorsNameTheLikeMethod) {
-  const std::pair<const char*, const char*> kinds[] = {{"bdpt", "--method bpt"}, {"ptracer", "--method lt"},
-                                                       {"sppm", "--method ppm"}, {"mlt", "--method mlt"},
-                                                       {"vcm", "--method vcm"},  {"ao", "no method here is like it"}};
+  const std::pair<const char*, const char*> kinds[] = {{"bdpt", "--method bpt"},
+                                                       {"ptracer", "--method lt"},
+                                                       {"sppm", "--method ppm"},
+                                                       {"pssmlt", "--method mlt is"},
+                                                       {"mlt", "--method mlt --mlt pathspace is"},
+                                                       {"photonmapper", "--method ppm --direct-pass is"},
+                                                       {"vcm", "--method vcm"},
+                                                       {"ao", "no method here is like it"}};
   for (const auto& [type, text] : kinds) {
     expectNote(loadBody("<integrator type=\"" + std::string(type) + "\"/>"), type, text);
   }
@@ -52,6 +58,27 @@ TEST(Notes, IntegratorsNameTheLikeMethod) {
 TEST(Notes, ParametersOfAnIntegratorAreNamed) {
   expectNote(loadBody(R"(<integrator type="sppm"><float name="alpha" value="0.9"/></integrator>)"),
              "integrator \"sppm\" with alpha", "--method ppm");
+}
+
+TEST(Notes, OfAPathTracerOnlyWhatGuidesSamplingIsLeftOut) {
+  expectNote(loadBody(R"(<integrator type="direct"><integer name="emitter_samples" value="2"/></integrator>)"),
+             "integrator \"direct\" with emitter_samples", "left out: guides how the integrator samples");
+  const auto strict = [](const std::string& value) {
+    return loadBody(R"(<integrator type="path"><boolean name="strict_normals" value=")" + value + "\"/></integrator>");
+  };
+  expectNote(strict("true"), "\"strict_normals\" of integrator \"path\"", "shading normals alone decide");
+  EXPECT_TRUE(strict("false").notes.empty());
+}
+
+TEST(Notes, UnknownParametersOfIntegrators) {
+  const std::string parameter = R"(<float name="clamping" value="0.1"/></integrator>)",
+                    vpl = R"(<integrator type="vpl">)" + parameter;
+  expectNote(load(sceneXml(vpl + std::string(kSensor) + std::string(kSphere), "0.6.0")),
+             "parameter \"clamping\" of integrator \"vpl\"", "wavecrest does not know it");
+  expectErrorOnLine2(vpl, "unknown parameter \"clamping\" of integrator \"vpl\"");
+  expectErrorOnLine2(R"(<integrator type="path"><integer name="maxDepth" value="3"/></integrator>)",
+                     "unknown parameter \"maxDepth\" of integrator \"path\"; expected max_depth, rr_depth");
+  expectNote(loadBody(R"(<integrator type="ao">)" + parameter), "with clamping", "no method here is like it");
 }
 
 TEST(Notes, SamplersAndFiltersThatAreReplaced) {

@@ -86,6 +86,25 @@ TEST(Obj, MaterialsOfALibraryAreNotedInOldFiles) {
   EXPECT_TRUE(sceneOfObj(text, "3.0.0", "").notes.empty()) << "as in Mitsuba 3";
 }
 
+// Mitsuba 0.6 makes a mesh of each of them, so that this cube has flat faces.
+TEST(Obj, GroupsAndMaterialsOfOldFilesShareNoVertices) {
+  const auto meshOf = [](const std::string& divider, std::string_view version, std::string_view options = "") {
+    std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+    for (const char* face : {"1 4 3 2", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"}) {
+      text += divider + "\nf " + face + "\n";
+    }
+    return std::get<Mesh>(sceneOfObj(text, version, options).shapes.at(0).kind);
+  };
+  for (const char* divider : {"g side", "g", "usemtl red"}) {
+    const Mesh old = meshOf(divider, "0.6.0");
+    ASSERT_EQ(old.positions.size(), 24u) << divider;
+    EXPECT_FLOAT_EQ(old.normals[0][2], -1) << divider;
+    EXPECT_EQ(meshOf(divider, "0.6.0", R"(<boolean name="collapse" value="true"/>)").positions.size(), 8u) << divider;
+    EXPECT_EQ(meshOf(divider, "3.0.0").positions.size(), 8u) << divider;
+  }
+  EXPECT_EQ(meshOf("s 1", "0.6.0").positions.size(), 8u);
+}
+
 TEST(Obj, OneMeshOfAnOldFileIsRefused) {
   const std::string text = std::string(kQuad) + "f 1 2 3\n";
   const auto index = [](const char* value) {

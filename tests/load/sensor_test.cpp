@@ -172,8 +172,12 @@ TEST(Film, CropWindow) {
 }
 
 TEST(Film, SizeFromOutsideDropsTheCropWindow) {
-  const FilmSettings film = sceneOf(kCrop, "perspective", {.filmSize = {{64, 32}}}).film;
+  const Scene scene = sceneOf(kCrop, "perspective", {.filmSize = {{64, 32}}});
+  const FilmSettings& film = scene.film;
   EXPECT_EQ((std::array{film.width, film.height, film.cropX, film.cropWidth}), (std::array{64u, 32u, 0u, 0u}));
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_EQ(scene.notes[0].what, "crop window");
+  EXPECT_TRUE(sceneOf(kTwoByOne, "perspective", {.filmSize = {{64, 32}}}).notes.empty());
 }
 
 TEST(Film, MistakesAreErrors) {
@@ -204,7 +208,7 @@ TEST(Integrator, DefaultsAreUnlimitedDepthAndRouletteAfterFive) {
 TEST(Integrator, AnyTypeIsAcceptedForItsDepths) {
   const RenderDefaults defaults = loadBody(R"(<integrator type="bdpt"><integer name="max_depth" value="7"/>
       <integer name="rr_depth" value="9"/>
-      <boolean name="lightImage" value="true"/></integrator>)")
+      <boolean name="light_image" value="true"/></integrator>)")
                                       .defaults;
   EXPECT_EQ(defaults.maxDepth, 7);
   EXPECT_EQ(defaults.rrDepth, 9);
@@ -258,6 +262,14 @@ TEST(Sampler, CountIsKept) {
   EXPECT_EQ(sceneOf(R"(<sampler type="multijitter"><integer name="sample_count" value="64"/></sampler>)")
                 .defaults.sampleCount,
             64u);
+}
+
+TEST(Sampler, ParametersOfSamplersHaveNoEffectAndOthersAreErrors) {
+  const Scene scene = sceneOf(R"(<sampler type="orthogonal"><integer name="seed" value="3"/>
+      <boolean name="jitter" value="false"/><integer name="strength" value="2"/></sampler>)");
+  EXPECT_EQ(scene.notes.size(), 1u) << "that of the sampler";
+  expectSensorError(R"(<sampler type="independent"><integer name="sampleCount" value="64"/></sampler>)",
+                    "unknown parameter \"sampleCount\" of sampler \"independent\"; expected sample_count");
 }
 
 }  // namespace

@@ -246,5 +246,27 @@ TEST(Instance, MustReferToAGroup) {
                      "expected a shapegroup");
 }
 
+// Mitsuba 0.6 makes a boundary of it that does not change light, Mitsuba 3 a diffuse surface.
+TEST(Shape, WithAMediumAndNoBsdfIsNullInOldFilesWithLenient) {
+  const auto sceneOf = [](const std::string& content, std::string_view version) {
+    return load(sceneXml("<shape type=\"cube\"><medium type=\"homogeneous\" name=\"interior\"/>" + content +
+                             "</shape>" + std::string(kSensor),
+                         version),
+                {.lenient = true});
+  };
+  const auto opacityOf = [](const Scene& scene) {
+    return scene.materials.at(scene.shapes.at(0).material).opacity.value_or(TexturedFloat{1}).value;
+  };
+  const Scene fog = sceneOf("", "0.6.0");
+  EXPECT_EQ(opacityOf(fog), 0);
+  ASSERT_EQ(fog.warnings.size(), 1u);
+  EXPECT_NE(fog.warnings[0].find("(left out; its boundary is null)"), std::string::npos) << fog.warnings[0];
+  EXPECT_EQ(opacityOf(sceneOf(R"(<bsdf type="diffuse"/>)", "0.6.0")), 1);
+  EXPECT_EQ(opacityOf(sceneOf(R"(<emitter type="area"/>)", "0.6.0")), 1);
+  EXPECT_EQ(opacityOf(sceneOf("", "3.0.0")), 1);
+  expectError(sceneXml("\n<shape type=\"cube\"><medium type=\"homogeneous\"/></shape>" + std::string(kSensor), "0.6.0"),
+              2, "<medium> in shape \"cube\": light transport in media is not supported; expected surfaces only");
+}
+
 }  // namespace
 }  // namespace wavecrest

@@ -442,5 +442,41 @@ TEST(ScaleTexture, NeedsOneThingToScale) {
                      "unknown object <texture>");
 }
 
+// As a number, except for heights, Mitsuba 0.6 takes the mean of the channels.
+TEST(Bitmap, OfColoursIsANumberByItsLuminanceOrInOldFilesItsMean) {
+  const Folder folder;
+  writeExr((folder.path() / "green.exr").string(), {.width = 1, .height = 1, .channels = 3, .pixels = {0, 1, 0}});
+  const auto numberOf = [&](const std::string& type, const std::string& parts, std::string_view version,
+                            const auto& textureIn) {
+    const Scene scene =
+        load(folder, sceneXml("<shape type=\"sphere\"><bsdf type=\"" + type + R"("><texture type="bitmap" name="weight">
+          <string name="filename" value="green.exr"/></texture>)" +
+                                  parts + "</bsdf></shape>" + std::string(kSensor),
+                              version));
+    const uint32_t texture = textureIn(scene.materials.at(scene.shapes.at(0).material));
+    const Bitmap& bitmap = *std::get<BitmapTexture>(scene.textures.at(texture).kind).bitmap;
+    EXPECT_EQ(bitmap.channels, 1u);
+    return bitmap.pixels.at(0);
+  };
+  const std::string diffuse = R"(<bsdf type="diffuse"/>)";
+  const auto weight = [](const Material& material) { return std::get<Blend>(material.kind).weightTexture; };
+  const auto height = [](const Material& material) { return material.bumpTexture; };
+  EXPECT_FLOAT_EQ(numberOf("blendbsdf", diffuse + diffuse, "3.0.0", weight), 0.71516f);
+  EXPECT_FLOAT_EQ(numberOf("blendbsdf", diffuse + diffuse, "0.6.0", weight), 1 / 3.0f);
+  EXPECT_FLOAT_EQ(numberOf("bumpmap", diffuse, "0.6.0", height), 0.71516f);
+}
+
+TEST(Bitmap, ChannelOfAlphaIs1WithLenient) {
+  const Folder folder;
+  writePng((folder.path() / "red.png").string(), Image8{.width = 1, .height = 1, .pixels = {255, 0, 0}});
+  const std::string sphere = texturedSphere(R"(<texture name="reflectance" type="bitmap">
+      <string name="filename" value="red.png"/><string name="channel" value="a"/></texture>)");
+  const Scene scene = loadBody(folder, sphere, {.lenient = true});
+  EXPECT_EQ(std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap->pixels, (std::vector<float>{1}));
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("(replaced by 1)"), std::string::npos) << scene.warnings[0];
+  EXPECT_THROW(loadBody(folder, sphere), LoadError);
+}
+
 }  // namespace
 }  // namespace wavecrest

@@ -274,6 +274,14 @@ TEST(Structure, EmptySceneIsAnError) { expectError(sceneXml(kSensor), 1, "scene 
 
 TEST(Structure, UnknownElementIsAnError) { expectErrorOnLine2("<bdsf type=\"diffuse\"/>", "unknown element <bdsf>"); }
 
+TEST(Structure, ElementsOfMitsuba06ThatAreNotSupportedSayWhatTheyAre) {
+  expectErrorOnLine2(
+      R"(<shape type="sphere"><subsurface type="dipole"/></shape>)",
+      "<subsurface> in shape \"sphere\": subsurface scattering is not supported; expected surfaces only");
+  expectErrorOnLine2(R"(<shape type="sphere"><animation name="toWorld"/></shape>)",
+                     "<animation> in shape \"sphere\": motion is not supported; expected a <transform>");
+}
+
 TEST(Structure, UnknownElementIsAWarningWithLenient) {
   const Scene scene = loadBody("\n<bdsf type=\"diffuse\"/>", {.lenient = true});
   ASSERT_EQ(scene.warnings.size(), 1u);

@@ -246,6 +246,28 @@ TEST(RoundTrip, NumbersOfACheckerboardOfAnOldFileAreTheSame) {
   EXPECT_EQ(again.color1, board.color1);
 }
 
+// As numbers, colours are their means in files of 0.6; in the file that is written, which is of version 3, they would
+// be their luminances.
+TEST(RoundTrip, NumbersOfAColourBitmapOfAnOldFileAreTheSame) {
+  const Folder folder;
+  Image image{2, 2, 3, {}};
+  for (int i = 0; i < 12; ++i) image.pixels.push_back(static_cast<float>((i * 5) % 12) / 11.0f);
+  writeExr((folder.path() / "colours.exr").string(), image);
+  const Scene scene =
+      load(folder, sceneXml(R"(<texture type="bitmap" id="t"><string name="filename" value="colours.exr"/>
+    </texture><shape type="sphere"><bsdf type="mask"><ref name="opacity" id="t"/><bsdf type="diffuse">
+    <ref name="reflectance" id="t"/></bsdf></bsdf></shape>)" +
+                                std::string(kSensor),
+                            "0.6.0"));
+  const auto numbersOf = [](const Scene& s) {
+    return std::get<BitmapTexture>(s.textures.at(s.materials.at(0).opacity->texture).kind).bitmap->pixels;
+  };
+  const std::vector<float> numbers = numbersOf(scene), again = numbersOf(savedAndLoaded(scene));
+  EXPECT_FLOAT_EQ(numbers.at(0), 5 / 11.0f);  // of 0, 5 and 10
+  ASSERT_EQ(again.size(), numbers.size());
+  for (size_t i = 0; i < numbers.size(); ++i) EXPECT_FLOAT_EQ(again[i], numbers[i]);
+}
+
 // Colours and a grey one, in 8 bits and beyond them.
 TEST(RoundTrip, BitmapsAsColoursNumbersAndNormals) {
   const Folder folder;
