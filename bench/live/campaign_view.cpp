@@ -13,10 +13,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Metrics by which curves may be drawn: name of their main score, symbol, and which way is better.
+// Metrics by which curves may be drawn, as campaigns measure them: name of their main score, symbol, and which way is
+// better.
 Json metricsJson() {
   Json metrics = Json::array();
   for (const Metric& metric : metricList()) {
+    if (!metric.byDefault) continue;
     metrics.push_back({{"name", scoreName(metric, metric.score)},
                        {"symbol", metric.symbol},
                        {"title", metric.title},

@@ -25,6 +25,7 @@ using asio::ip::tcp;
 constexpr auto kHeartbeat = std::chrono::seconds(5);  // tells a browser that the render is still there
 constexpr int kBacklog = 64;                          // of connections that the system holds
 constexpr int kAcceptedAtOnce = 5;                    // before a pause
+constexpr size_t kPiece = size_t{1} << 18;            // bytes of a reply that have kReplyTime
 
 // A comment of an event stream.
 constexpr const char* kStillThere = ": still there\n\n";
@@ -144,8 +145,10 @@ class LiveNetwork::Connections {
       acceptor_.set_option(tcp::acceptor::reuse_address(true));
       acceptor_.bind(endpoint);
       acceptor_.listen(kBacklog);
-    } catch (const asio::system_error&) {
-      throw std::runtime_error(address.text() + ": cannot be listened at; expected a free port");
+    } catch (const asio::system_error& error) {
+      throw std::runtime_error(
+          fmt::format("{}: cannot be listened at: {}; expected an address of this machine with a free port",
+                      address.text(), error.code().message()));
     }
   }
 
@@ -226,7 +229,6 @@ class LiveNetwork::Connections {
 
   // Sends what follows the first `done` bytes, in pieces that have kReplyTime each.
   void sendRest(const Held& to, size_t done) {
-    constexpr size_t kPiece = size_t{1} << 18;
     const size_t head = to->head.size();
     if (done == head + to->body->size()) {
       if (to->image) server_.imageWasSent(to->image);
@@ -260,9 +262,15 @@ class LiveNetwork::Connections {
   void send(const Held& reader, std::string text, bool last = false) {
     reader->writes = true;
     reader->head = std::move(text);
+    sendText(reader, 0, last);
+  }
+
+  // Sends what follows the first `done` bytes of the text, in pieces that have kReplyTime each.
+  void sendText(const Held& reader, size_t done, bool last) {
     leaveAfter(reader, kReplyTime);
-    asio::async_write(reader->socket, asio::buffer(reader->head),
-                      [this, reader, last](const error_code& error, size_t) {
+    asio::async_write(reader->socket, asio::buffer(std::string_view(reader->head).substr(done, kPiece)),
+                      [this, reader, done, last](const error_code& error, size_t count) {
+                        if (!error && done + count < reader->head.size()) return sendText(reader, done + count, last);
                         reader->writes = false;
                         if (error) return leave(reader);
                         last ? finish(reader) : sendEvents(reader);

@@ -17,6 +17,7 @@ namespace wavecrest {
 namespace {
 
 constexpr auto kFarewell = std::chrono::seconds(2);  // for readers to take the end
+constexpr size_t kEventsAtOnce = size_t{1} << 18;    // bytes after which no further event is added
 
 // 128 random bits in hexadecimal digits.
 std::string newToken() {
@@ -94,8 +95,10 @@ std::string LiveServer::newEvents(size_t& next, bool& over) {
   const std::lock_guard<std::mutex> lock(mutex_);
   // A reader that connects again names the last id that it got.
   std::string text;
-  for (; next < events_.size(); ++next) text += fmt::format("id: {}\ndata: {}\n\n", next, events_[next]);
-  over = over_;
+  for (; next < events_.size() && text.size() < kEventsAtOnce; ++next) {
+    text += fmt::format("id: {}\ndata: {}\n\n", next, events_[next]);
+  }
+  over = over_ && next >= events_.size();
   if (over) text += "event: end\ndata: {}\n\n";
   return text;
 }

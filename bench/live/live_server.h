@@ -45,7 +45,8 @@ class LiveServer {
 
   bool isToken(std::string_view text) const;
   const std::string& page() const { return page_; }
-  // Events from `next` on that there are by now, as text of the stream; over: no more will come.
+  // Events from `next` on that there are by now, as text of the stream; of many those that come first. over: no more
+  // will come.
   std::string newEvents(size_t& next, bool& over);
   // The newest image with its bytes; null where there is none yet.
   struct Encoded {

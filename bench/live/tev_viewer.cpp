@@ -12,6 +12,8 @@
 namespace wavecrest {
 namespace {
 
+using asio::ip::tcp;
+
 constexpr auto kPatience = std::chrono::seconds(5);  // for a connection, and for each packet
 constexpr size_t kPacketBytes = size_t{16} << 20;    // of rows, about
 
@@ -21,16 +23,15 @@ constexpr size_t kPacketBytes = size_t{16} << 20;    // of rows, about
 class TevViewer::Connection {
  public:
   explicit Connection(const HostPort& address) {
-    stream_.expires_after(kPatience);
-    stream_.connect(address.host, std::to_string(address.port));
-    check("connecting failed");
-    stream_.socket().set_option(asio::ip::tcp::no_delay(true));
+    asio::error_code error;
+    const auto endpoints = tcp::resolver(io_).resolve(address.host, std::to_string(address.port), error);
+    check("connecting failed", error);
+    finish("connecting failed", [&](auto handler) { asio::async_connect(socket_, endpoints, std::move(handler)); });
+    socket_.set_option(tcp::no_delay(true));
   }
   void send(const tev::Packet& packet) {
-    stream_.expires_after(kPatience);
-    stream_.write(packet.data(), static_cast<std::streamsize>(packet.size()));
-    stream_.flush();
-    check("sending failed");
+    finish("sending failed",
+           [&](auto handler) { asio::async_write(socket_, asio::buffer(packet), std::move(handler)); });
   }
   // In bands, so that the film may be of any size.
   void send(const std::string& name, const Image& image) {
@@ -42,11 +43,27 @@ class TevViewer::Connection {
   }
 
  private:
-  // Throws if the stream has failed, also by a timeout.
-  void check(const char* step) {
-    if (!stream_) throw std::runtime_error(std::string(step) + ": " + stream_.error().message());
+  // Begins a step, which is given its handler, and runs it to its end. Throws if it fails or takes too long.
+  template <class Begin>
+  void finish(const char* step, Begin begin) {
+    asio::error_code error;
+    begin([&error](const asio::error_code& result, const auto& /*endpointOrBytes*/) { error = result; });
+    io_.restart();
+    io_.run_for(kPatience);
+    if (!io_.stopped()) {
+      // The handler has not been called yet. Closing the socket ends its step.
+      socket_.close(error);
+      io_.run();
+      error = asio::error::timed_out;
+    }
+    check(step, error);
   }
-  asio::ip::tcp::iostream stream_;
+  static void check(const char* step, const asio::error_code& error) {
+    if (error) throw std::runtime_error(std::string(step) + ": " + error.message());
+  }
+
+  asio::io_context io_{1};
+  tcp::socket socket_{io_};
 };
 
 TevViewer::TevViewer(HostPort address, std::string name, std::function<void(const std::string&)> warn)

@@ -86,8 +86,8 @@ void WatchedSession::addSlice(uint64_t iterations) {
 void WatchedSession::estimateError() {
   if (!slices_ || errorIterations_ == slicesUntil_) return;
   const std::optional<FilmError> now = estimateFilmError(slices_->slices(), BlockSample::kWidth);
-  // Where slices are too uneven to tell, the last estimate stays.
-  if (!now) return;
+  // Where slices are too uneven to tell, the last estimate stays. Without variance few iterations do not tell either.
+  if (!now || (now->value <= kNoVariance && slicesUntil_ < kBlackIterations)) return;
   error_ = now;
   errorIterations_ = slicesUntil_;
 }
@@ -101,22 +101,27 @@ void WatchedSession::renderUntil(std::optional<uint64_t> iterations, std::option
 }
 
 void WatchedSession::renderWatched(std::optional<uint64_t> iterations, std::optional<double> seconds) {
+  double lookLimit = nextLook_;
   for (;;) {
     // Render up to the nearest limit: of the caller, of the next slice, or of the next look.
     const std::optional<uint64_t> slice = nextSlice();
     const double due = nextLook_;
-    session_->renderUntil(earlier(iterations, slice), earlier(seconds, std::optional(due)));
+    session_->renderUntil(earlier(iterations, slice), earlier(seconds, std::optional(lookLimit)));
     if (session_->interrupted()) return;
 
     // Find out which limit ended it.
     const uint64_t done = session_->statistics().iterations;
+    const double now = session_->progressSeconds();
     const bool sliceReached = slice && done == *slice, allDone = iterations && done >= *iterations;
     // Otherwise the time ended it: chains may end a moment before theirs, where another step does not fit in.
     const bool timeEnded = !sliceReached && !allDone;
     if (sliceReached) addSlice(done);
+    // Callers look themselves where their own limit ends it: at a snapshot, or at the end.
+    if (allDone || (seconds && (now >= *seconds || (timeEnded && *seconds <= lookLimit)))) return;
     // A look changes nextLook_: where slices have just begun with one, another is not due yet.
-    if (nextLook_ == due && (timeEnded || session_->progressSeconds() >= due)) look(false);
-    if (allDone || (seconds && ((timeEnded && *seconds <= due) || session_->progressSeconds() >= *seconds))) return;
+    if (nextLook_ == due && now >= due) look(false);
+    // Where no step fits in before the limit, it moves on until one does. The look comes after that step.
+    lookLimit = timeEnded && now < due ? lookLimit + (lookLimit - now) : nextLook_;
   }
 }
 

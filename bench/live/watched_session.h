@@ -1,8 +1,9 @@
 // A session that is looked at while it renders.
 //
 // It renders as the session within does, to the same image bit for bit, but returns to itself now and then to take a
-// look. The render clock stands still meanwhile. Looks follow each other at a second or more; all that looking costs
-// stays below kMostLooking of the render time, so films that are slow to resolve are looked at more rarely.
+// look. The render clock stands still meanwhile. Looks follow each other at a second or more, besides those at
+// snapshots and at the end. All that looking costs stays below kMostLooking of the render time, so films that are slow
+// to resolve are looked at more rarely; only looks at snapshots and at the end are taken whatever they cost.
 //
 // The error is that of bench/until/film_error.h, of a sample of the film's blocks. It takes films of equal numbers of
 // iterations: how many follows from what the first iteration and two copies of the film have taken.

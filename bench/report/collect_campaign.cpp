@@ -13,6 +13,7 @@
 #include "bench/claims/judge_claims.h"
 #include "bench/report/final_images.h"
 #include "bench/report/html_text.h"
+#include "bench/report/method_style.h"
 #include "bench/report/series_facts.h"
 #include "bench/report/shown_metrics.h"
 #include "bench/results/noise_floors.h"
@@ -87,7 +88,8 @@ std::vector<ReportBias> biasOf(const CampaignResults& results, const Group& grou
 // One series from the runs of one scene and method.
 ReportSeries seriesOf(const CampaignResults& results, const Group& group, const std::vector<ReportMetric>& metrics) {
   ReportSeries series;
-  series.method = series.label = group[0]->method;
+  series.label = group[0]->method;
+  series.method = methodId(series.label);
   std::vector<nlohmann::json> stats;
   for (const RunRecord* run : group) {
     ReportRun shown{.seed = run->seed, .points = {}};

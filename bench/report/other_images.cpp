@@ -234,6 +234,7 @@ std::vector<RunFile> readListedRuns(const fs::path& list, const std::string& sce
   std::vector<OtherImage> images;
   std::string text;
   for (size_t line = 1; std::getline(file, text); ++line) {
+    if (line == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the mark of UTF-8
     const std::vector<std::string> fields = fieldsOf(text);
     if (fields.size() == 1 && fields.front().empty()) continue;
     // The first line may name the columns.

@@ -233,8 +233,9 @@ std::string renderClaims(const ConvergenceReport& report) {
   const auto judged = std::ssize(report.claims) - count("not judged");
   std::string html = "<section id=\"claims\"><h2>The study's findings</h2><p class=\"facts\">";
   if (judged > 0) {
-    append(html, "{} hold, {} do not, {} not in this time, {} are undecided. ", count("holds"), count("does not hold"),
-           count("not reached in this time"), count("undecided"));
+    const auto hold = count("holds"), fail = count("does not hold"), undecided = count("undecided");
+    append(html, "{} {}, {} {} not, {} not in this time, {} {} undecided. ", hold, hold == 1 ? "holds" : "hold", fail,
+           fail == 1 ? "does" : "do", count("not reached in this time"), undecided, undecided == 1 ? "is" : "are");
   }
   if (count("not judged") > 0) {
     append(html, "{} cannot be judged by this campaign, which counts neither for nor against them.",

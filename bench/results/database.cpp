@@ -7,6 +7,22 @@ namespace {
 
 constexpr int kBusyMilliseconds = 10000;  // a report may be reading while a campaign writes
 
+// What a call that failed with this status would have needed.
+const char* neededAfter(int status) {
+  switch (status & 0xff) {  // the bits above tell more of the same failure
+    case SQLITE_FULL:
+    case SQLITE_IOERR:
+    case SQLITE_READONLY:
+    case SQLITE_CANTOPEN:
+      return "a writable place with room";
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return "no other program at work on it";
+    default:
+      return "an intact results file of a campaign";
+  }
+}
+
 }  // namespace
 
 Database::Database(const std::filesystem::path& path, OpenFor purpose) : path_(path) {
@@ -20,9 +36,8 @@ Database::Database(const std::filesystem::path& path, OpenFor purpose) : path_(p
 
 // Runs one or several SQL statements. Rows that they give are ignored.
 void Database::execute(const std::string& sql) {
-  if (sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) {
-    fail("an intact results file of a campaign");
-  }
+  const int status = sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr);
+  if (status != SQLITE_OK) fail(neededAfter(status));
 }
 
 void Database::fail(const std::string& expected) const {
@@ -67,7 +82,7 @@ void Statement::bindInteger(int place, int64_t value) { check(sqlite3_bind_int64
 
 void Statement::check(int status) const {
   // A violated constraint and a lock that timed out end here as well, in SQLite's own words.
-  if (status != SQLITE_OK) database_.fail("an intact results file of a campaign");
+  if (status != SQLITE_OK) database_.fail(neededAfter(status));
 }
 
 }  // namespace wavecrest

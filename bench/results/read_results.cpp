@@ -1,6 +1,7 @@
 #include "bench/results/read_results.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "bench/results/distinct_values.h"
@@ -128,8 +129,8 @@ std::vector<ClaimRecord> readClaims(Database& database) {
 // ---- several --------------------------------------------------------------------------------------------------------
 
 // Keys of the campaign that may differ between the machines that share it; every other key must agree.
-const std::set<std::string_view> kEnvironmentKeys{"commit", "cpu",     "host",    "isa",    "reference_folder",
-                                                  "shard",  "started", "version", "threads"};
+const std::set<std::string_view> kEnvironmentKeys{"commit",           "cpu",   "host",    "isa",
+                                                  "reference_folder", "shard", "version", "threads"};
 
 // Throws for a file that is no part of the campaign in the first file.
 [[noreturn]] void fail(const fs::path& path, const std::string& wrong, const fs::path& first) {
@@ -152,13 +153,14 @@ void mergeCampaign(CampaignResults& all, const CampaignResults& part, const fs::
 
 // Adds scenes that are new. A known one must have the same content, size and reference.
 void mergeScenes(CampaignResults& all, const CampaignResults& part, const fs::path& path, const fs::path& first) {
+  const auto text = [](const MetricValues& floors) { return nlohmann::json(floors).dump(); };  // the same for NaN
   for (const SceneRecord& scene : part.scenes) {
     const SceneRecord* known = all.findScene(scene.name);
     if (known == nullptr) {
       all.scenes.push_back(scene);
     } else if (known->hash != scene.hash || known->width != scene.width || known->height != scene.height) {
       fail(path, "its scene " + scene.name + " is another", first);
-    } else if (known->noiseFloors != scene.noiseFloors) {
+    } else if (text(known->noiseFloors) != text(scene.noiseFloors)) {
       // References are compared by their noise floors, as the file paths may differ.
       fail(path, "its reference of " + scene.name + " is another", first);
     }

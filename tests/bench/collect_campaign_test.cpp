@@ -12,6 +12,7 @@
 #include "bench/claims/explanations.h"
 #include "bench/report/collect.h"
 #include "bench/report/results_folder.h"
+#include "bench/report/series_values.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
 #include "metrics/image/image_io.h"
@@ -102,6 +103,15 @@ TEST_F(CollectCampaign, gathersSeedsIntoSeriesByMethod) {
   EXPECT_DOUBLE_EQ(pt.pathsPerSecond, 1e6);
   EXPECT_DOUBLE_EQ(pt.cpuSeconds, 16);
   EXPECT_EQ(pt.stages.at(0).items, 200U);
+}
+
+// Results files may come from others.
+TEST_F(CollectCampaign, namesOfMethodsAddNoRulesToTheStyleSheet) {
+  const std::string name = "x{}*{background:url(https://h/)}";
+  writeStore("results.sqlite", {run(name, 1, 0.2)});
+  const ConvergenceReport report = collect();
+  EXPECT_EQ(report.scenes.at(0).series.at(0).label, name);
+  EXPECT_EQ(coloursOfOthers(report), ".m-x----background-url-https---h--- { color: var(--x0); }\n");
 }
 
 TEST_F(CollectCampaign, leavesOutSnapshotsBeforeTheFirstWholeImage) {

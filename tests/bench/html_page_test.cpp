@@ -174,7 +174,7 @@ TEST(Summary, aPerfectScoreIsNotBehindItself) {
 
 TEST(Summary, claimsCarryTheirVerdicts) {
   const std::string claims = renderClaims(sampleReport());
-  EXPECT_TRUE(contains(claims, "0 hold, 1 do not, 0 not in this time, 1 are undecided"));
+  EXPECT_TRUE(contains(claims, "0 hold, 1 does not, 0 not in this time, 1 is undecided"));
   EXPECT_TRUE(contains(claims, "<td>pt &lt; bpt<td><span class=\"verdict fails\">does not hold</span>"));
   ConvergenceReport report = sampleReport();
   report.claims[0].source = "BPT & PT";
@@ -184,7 +184,7 @@ TEST(Summary, claimsCarryTheirVerdicts) {
   EXPECT_TRUE(contains(explained, "<summary>evidence</summary><p>a &lt; b</p>0.1</details>")) << "behind a click";
   report.claims[1].verdict = "not reached in this time";
   const std::string later = renderClaims(report);
-  EXPECT_TRUE(contains(later, "0 hold, 1 do not, 1 not in this time, 0 are undecided"));
+  EXPECT_TRUE(contains(later, "0 hold, 1 does not, 1 not in this time, 0 are undecided"));
   EXPECT_TRUE(contains(later, "<span class=\"verdict undecided\">not reached in this time</span>"));
   report.claims[0].figure = "SSIM 0.9 < 0.95";
   report.claims[1].verdict = "not judged";

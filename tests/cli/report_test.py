@@ -126,7 +126,8 @@ class OtherPrograms(CommandTest):
             shutil.move(self.folder / "box" / f"{name}.exr", self.folder / "box" / f"{name[:4]}_{len(name)}.exr")
         self.write("box/images.csv", "path_8.exr,0.5\npath_7.exr, 2s\n")
         self.assertEqual(sorted(self.scores("box")), [("path", 0.5), ("path", 2.0)])
-        self.write("box/all.csv", 'seconds,image,method,seed\n0.5,path_8.exr,"a, b",1\n1,path_7.exr,"a, b",2\n')
+        # A byte order mark, as spreadsheets write it, is none of the first column's name.
+        self.write("box/all.csv", '\ufeffseconds,image,method,seed\n0.5,path_8.exr,"a, b",1\n1,path_7.exr,"a, b",2\n')
         scores = self.scores("box/all.csv", "--reference", "box/my bdpt.1500ms.exr")
         self.assertEqual(sorted(scores), [("a, b", 0.5), ("a, b", 1.0)])
         self.assert_as_compared(scores[("a, b", 1.0)], "box/path_7.exr", "box/my bdpt.1500ms.exr")

@@ -180,10 +180,11 @@ class TevTest(CommandTest):
     def test_a_tev_that_takes_nothing_does_not_keep_the_render_waiting(self):
         with socket.create_server(("127.0.0.1", 0)) as listener:  # connects, and reads nothing
             begin = time.monotonic()
-            self.run_wavecrest(
+            result = self.run_wavecrest(
                 "render", "cornell-diffuse", "--size", "1024x1024", "--time", "1s", "--tev",
                 f"127.0.0.1:{listener.getsockname()[1]}",
             )  # fmt: skip
+            self.assertRegex(result.stderr, "warning: --tev .*sending failed: .*timed out")
             self.assertLess(time.monotonic() - begin, 60)
 
     def test_images_are_the_same_with_and_without(self):

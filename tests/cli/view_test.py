@@ -98,6 +98,9 @@ class ViewTest(Viewed):
         process, page = self.started("render", *SMALL, "--time", "10m", "--view")
         taken = self.render("--view", str(page.url.port), "--spp", "1", expect=USAGE)
         self.assert_one_error_line(taken, rf"--view 127\.0\.0\.1:{page.url.port}: .*free port")
+        # An address of documentation, which no machine has.
+        elsewhere = self.render("--view", "192.0.2.1:0", "--spp", "1", expect=USAGE)
+        self.assert_one_error_line(elsewhere, r"--view 192\.0\.2\.1:0: .*: Cannot assign .*; expected an address of this")
         for word in ("cornell-mirror", "65536", "-1", "a:b:80"):
             self.assertIn("PORT", self.render(f"--view={word}", expect=USAGE).stderr)
         process.kill()
@@ -112,7 +115,9 @@ class ViewTest(Viewed):
         campaign = events[0]["campaign"]
         self.assertEqual(campaign["scenes"], ["cornell-diffuse"])
         self.assertEqual([method["id"] for method in campaign["methods"]], ["pt", "bpt"])
-        self.assertIn("ssim", [metric["name"] for metric in campaign["metrics"]])
+        names = [metric["name"] for metric in campaign["metrics"]]
+        self.assertIn("ssim", names)
+        self.assertNotIn("hdrflip", names)  # which campaigns do not measure
         runs = [event["run"] for event in events if "run" in event]
         self.assertEqual(
             [(run["method"], run["seed"]) for run in runs], [("pt", 1), ("bpt", 1), ("pt", 2), ("bpt", 2)]

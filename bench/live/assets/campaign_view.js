@@ -27,7 +27,7 @@ function build() {
     const section = element("section", "scene"), row = element("div", "campaign");
     section.id = `scene-${scene}`;
     const figure = element("figure", "card"), plot = svgElement("svg", { class: "live-plot", role: "img" });
-    figure.append(element("figcaption"), plot, element("p", "waits", "No run of this scene is done."));
+    figure.append(element("figcaption"), plot, element("p", "waits", "No run of this scene has this score."));
     const table = element("table", "runs");
     table.append(element("thead"), element("tbody"));
     table.tHead.innerHTML = "<tr><th>method<th>seeds<th class=\"n\"><th class=\"n\">spp";

@@ -1,5 +1,5 @@
-// A connection that fails ends alone. An executable of its own, because it replaces the global operator new by one that
-// refuses large blocks.
+// A connection that fails ends alone, and one that has much to take gets it in pieces. An executable of its own,
+// because it replaces the global operator new by one that refuses large blocks.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -58,6 +58,11 @@ class Asked {
   Asked(const Asked&) = delete;
   Asked& operator=(const Asked&) = delete;
 
+  // Waits for the first byte and takes it.
+  void awaitAnswer() const {
+    char byte = 0;
+    EXPECT_EQ(::read(socket_, &byte, 1), 1);
+  }
   // All that comes until the connection ends.
   std::string answer() const {
     std::string text;
@@ -72,12 +77,14 @@ class Asked {
   const int socket_;
 };
 
+// The port of http://127.0.0.1:PORT/?token=TOKEN, and what begins with the question mark.
+int portOf(const std::string& url) { return std::stoi(url.substr(std::string("http://127.0.0.1:").size())); }
+std::string tokenOf(const std::string& url) { return url.substr(url.find('?')); }
+
 TEST(LiveNetwork, answersOthersWhereAReplyFindsNoMemory) {
   LiveServer server({.host = "127.0.0.1", .port = 0}, "the page");
-  const std::string url = server.url(), begin = "http://127.0.0.1:";
-  ASSERT_TRUE(url.starts_with(begin));
-  const int port = std::stoi(url.substr(begin.size()));
-  const std::string token = url.substr(url.find('?'));
+  const int port = portOf(server.url());
+  const std::string token = tokenOf(server.url());
   constexpr uint32_t kWidth = 1024, kHeight = 512;
   server.setImage(std::make_shared<const Image>(
       Image{.width = kWidth, .height = kHeight, .channels = 3, .pixels = std::vector<float>(3 * kWidth * kHeight)}));
@@ -88,6 +95,28 @@ TEST(LiveNetwork, answersOthersWhereAReplyFindsNoMemory) {
   const std::string answer = Asked(port, "/" + token).answer();
   EXPECT_TRUE(answer.starts_with("HTTP/1.1 200 OK")) << answer;
   EXPECT_TRUE(answer.ends_with("the page")) << answer;
+}
+
+// Four megabytes in all, the last of them in one event.
+TEST(LiveNetwork, sendsManyEventsInPiecesAndTheEndAfterAll) {
+  auto server = std::make_unique<LiveServer>(HostPort{.host = "127.0.0.1", .port = 0}, "the page");
+  const std::string small(size_t{1} << 12, 'x'), large(size_t{1} << 20, 'y');
+  for (size_t i = 0; i < 768; ++i) server->publish(small);
+  server->publish(large);
+  size_t next = 0;
+  bool over = true;
+  const size_t first = server->newEvents(next, over).size();
+  EXPECT_LT(first, (size_t{1} << 18) + 2 * small.size());
+  EXPECT_GT(next, 0u);
+  EXPECT_FALSE(over);
+
+  const Asked reader(portOf(server->url()), "/events" + tokenOf(server->url()));
+  reader.awaitAnswer();
+  std::thread ending([&] { server.reset(); });
+  const std::string answer = reader.answer();
+  ending.join();
+  EXPECT_GT(answer.size(), 768 * small.size() + large.size());
+  EXPECT_TRUE(answer.ends_with("id: 768\ndata: " + large + "\n\nevent: end\ndata: {}\n\n"));
 }
 
 }  // namespace

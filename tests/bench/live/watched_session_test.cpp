@@ -1,4 +1,4 @@
-// The error that a watched session tells is of independent iterations alone.
+// When a watched session looks, and of which iterations it tells an error: of independent ones alone.
 #include "bench/live/watched_session.h"
 
 #include <gtest/gtest.h>
@@ -7,8 +7,10 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "tests/bench/small_box.h"
+#include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest {
 namespace {
@@ -43,33 +45,114 @@ TEST(WatchedSession, tellsNoErrorWhereItsFirstIterationIsTheSecondOfTwo) {
   EXPECT_FALSE(errorAfter(2 * std::max(*ofFirst, *ofThird), 1));
 }
 
-// A session whose first iteration takes ten seconds by its clock, and the others none.
-class SlowSession final : public Session {
+// A session with a clock of its own, by which the first iteration and each of the others take so many seconds. As
+// chains do, it begins none that would end after its limit, besides the first.
+class SteppedSession final : public Session {
  public:
-  explicit SlowSession(std::unique_ptr<Session> within) : within_(std::move(within)) {}
-  void renderUntil(std::optional<uint64_t> iterations, std::optional<double> /*seconds*/) override {
-    within_->renderUntil(iterations, std::nullopt);
+  struct Seconds {
+    double begin = 0, first = 0, others = 0;
+  };
+  SteppedSession(std::unique_ptr<Session> within, Seconds seconds) : within_(std::move(within)), seconds_(seconds) {}
+
+  void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) override {
+    for (;;) {
+      const uint64_t done = within_->statistics().iterations;
+      if (iterations && done >= *iterations) return;
+      if (seconds && (done == 0 ? seconds_.begin >= *seconds : secondsAfter(done + 1) > *seconds)) return;
+      within_->renderUntil(done + 1, std::nullopt);
+    }
   }
   RenderStatistics statistics() const override { return within_->statistics(); }
   const Film& film() const override { return within_->film(); }
   const MemoryPlan& memoryPlan() const override { return within_->memoryPlan(); }
   void save(StateWriter& out) const override { within_->save(out); }
   void restore(StateReader& in) override { within_->restore(in); }
-  double progressSeconds() const override { return statistics().iterations == 0 ? 0 : 10; }
+  double progressSeconds() const override { return secondsAfter(within_->statistics().iterations); }
   uint64_t progressPaths() const override { return within_->progressPaths(); }
 
  private:
+  double secondsAfter(uint64_t iterations) const {
+    return iterations == 0 ? seconds_.begin
+                           : seconds_.begin + seconds_.first + seconds_.others * static_cast<double>(iterations - 1);
+  }
+
   const std::unique_ptr<Session> within_;
+  const Seconds seconds_;
 };
+
+// A session of which no error is known, as of chains, whose iterations take so many seconds, from `begin` on. looks: is
+// told at which seconds it was looked at.
+WatchedSession sessionOfChains(double begin, double step, std::vector<double>& looks) {
+  RenderSettings settings = settingsOf(Method::pt);
+  auto within =
+      std::make_unique<SteppedSession>(Session::create(smallBox(8, 8), settings),
+                                       SteppedSession::Seconds{.begin = begin, .first = step, .others = step});
+  settings.method = Method::mlt;
+  return {std::move(within), settings,
+          [&looks](const std::shared_ptr<const Look>& look) { looks.push_back(look->renderSeconds); }};
+}
 
 // The look after the first iteration, by which slices begin, is the one that is due then.
 TEST(WatchedSession, looksOnceAfterASlowFirstIteration) {
   const RenderSettings settings = settingsOf(Method::pt);
   size_t looks = 0;
-  WatchedSession session(std::make_unique<SlowSession>(Session::create(smallBox(32, 24), settings)), settings,
-                         [&](const std::shared_ptr<const Look>&) { ++looks; });
-  session.renderUntil(1, std::nullopt);
+  WatchedSession session(std::make_unique<SteppedSession>(Session::create(smallBox(32, 24), settings),
+                                                          SteppedSession::Seconds{.first = 10}),
+                         settings, [&](const std::shared_ptr<const Look>&) { ++looks; });
+  session.renderUntil(2, std::nullopt);
   EXPECT_EQ(looks, 1u);
+}
+
+// It begins at an hour, so that the cost of the looks puts none of them off.
+TEST(WatchedSession, looksAfterEachStepThatIsLongerThanTheTimeBetweenLooks) {
+  std::vector<double> looks;
+  WatchedSession session = sessionOfChains(3600, 3, looks);
+  session.renderUntil(std::nullopt, 3612);
+  EXPECT_EQ(session.progressSeconds(), 3612);
+  EXPECT_EQ(looks, (std::vector<double>{3600, 3603, 3606, 3609}));
+}
+
+TEST(WatchedSession, looksASecondApartWhereStepsAreAlmostAsLong) {
+  std::vector<double> looks;
+  WatchedSession session = sessionOfChains(3600, 0.75, looks);
+  session.renderUntil(std::nullopt, 3606);
+  EXPECT_EQ(session.progressSeconds(), 3606);
+  EXPECT_EQ(looks, (std::vector<double>{3600, 3601.5, 3603, 3604.5}));
+}
+
+TEST(WatchedSession, leavesTheLookAtACallersLimitToTheCaller) {
+  std::vector<double> looks;
+  WatchedSession session = sessionOfChains(0, 1.0 / 64, looks);
+  session.renderUntil(std::nullopt, 0.125);
+  EXPECT_TRUE(looks.empty());
+}
+
+// The error of a sky that is the same everywhere, after so many iterations. Slices are of one iteration: the first has
+// taken ten seconds.
+std::optional<FilmError> errorOfSky(uint64_t iterations) {
+  const test::TemporaryFolder folder;
+  LoadOptions options;
+  options.filmSize = {16, 8};
+  const Scene scene = loadScene(
+      folder.write(
+          "scene.xml",
+          R"(<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><rfilter type="box"/></film></sensor>
+             <emitter type="constant"/><shape type="sphere"><point name="center" z="-9"/></shape></scene>)"),
+      options);
+  const RenderSettings settings = settingsOf(Method::pt);
+  std::optional<FilmError> error;
+  WatchedSession session(
+      std::make_unique<SteppedSession>(Session::create(scene, settings), SteppedSession::Seconds{.first = 10}),
+      settings, [&](const std::shared_ptr<const Look>& look) { error = look->error; });
+  session.renderUntil(iterations, std::nullopt);
+  session.look(true);
+  return error;
+}
+
+// A small lamp that no path has hit yet would look the same.
+TEST(WatchedSession, believesInAFilmWithoutVarianceOnlyAfterManyIterations) {
+  EXPECT_FALSE(errorOfSky(kBlackIterations / 2));
+  EXPECT_TRUE(errorOfSky(kBlackIterations));
 }
 
 }  // namespace

@@ -187,6 +187,18 @@ TEST(ResultsStore, aRunInPlaceOfAnotherTakesThatOnesBiasAway) {
   EXPECT_EQ(results.biases[0].method, "lt");
 }
 
+TEST(ResultsStore, aRunOfAnotherSeedTakesTheMethodsBiasAway) {
+  const TemporaryFolder folder;
+  ResultsStore store(folder.path("results.sqlite"));
+  store.putScene(sampleScene());
+  for (uint64_t seed = 1; seed <= 2; ++seed) store.putRun(sampleRun("box", "pt", seed));
+  store.putBiases({{"box", "pt", 1, 2, 3, 2, 1}, {"box", "lt", 1, 2, 3, 2, 1}});
+  store.putRun(sampleRun("box", "pt", 3));
+  const CampaignResults results = readResults(folder.folder());
+  ASSERT_EQ(results.biases.size(), 1u);
+  EXPECT_EQ(results.biases[0].method, "lt");
+}
+
 TEST(ResultsStore, aRunNeedsItsScene) {
   const TemporaryFolder folder;
   ResultsStore store(folder.path("results.sqlite"));
@@ -229,6 +241,35 @@ TEST(ResultsStore, aFinishedFileNeedsNoJournalBesideIt) {
   }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.folder()), {}), 1);
   EXPECT_EQ(journalMode(), "delete") << "a file in WAL mode cannot be read in a folder that is read-only";
+}
+
+// What is said of a statement that fails; empty if it does not.
+std::string failureOf(Database& database, const std::string& sql) {
+  try {
+    database.execute(sql);
+  } catch (const ResultsFileError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Database, tellsAFullDiskALockAndAReadOnlyFileFromADamagedOne) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("a.sqlite");
+  Database database(path, OpenFor::writing);
+  database.execute("CREATE TABLE t(a); PRAGMA max_page_count = 1");  // no fewer than there are
+  const std::string full = failureOf(database, "INSERT INTO t VALUES(zeroblob(1000000))");
+  EXPECT_NE(full.find("expected a writable place with room"), std::string::npos) << full;
+  Database reader(path, OpenFor::reading);
+  const std::string readOnly = failureOf(reader, "INSERT INTO t VALUES(1)");
+  EXPECT_NE(readOnly.find("expected a writable place with room"), std::string::npos) << readOnly;
+  Database other(path, OpenFor::writing);
+  sqlite3_busy_timeout(other.handle(), 0);
+  database.execute("BEGIN IMMEDIATE");
+  const std::string locked = failureOf(other, "BEGIN IMMEDIATE");
+  EXPECT_NE(locked.find("expected no other program at work on it"), std::string::npos) << locked;
+  const std::string wrong = failureOf(other, "SELECT a FROM none");
+  EXPECT_NE(wrong.find("expected an intact results file"), std::string::npos) << wrong;
 }
 
 TEST(ReadResults, otherFilesAreRefused) {
@@ -284,6 +325,23 @@ TEST(ReadResults, shardsComeBackAsOneCampaign) {
   EXPECT_NE(results.findRun("box", "lt", 1), nullptr);
   EXPECT_EQ(results.runs[2].scene, "room");
   EXPECT_TRUE(results.claims.empty()) << "no shard can judge the whole";
+}
+
+// A shard that was resumed on another machine lists both.
+TEST(ReadResults, valuesOfShardsThatListSeveralAreNamedOnce) {
+  const TemporaryFolder folder;
+  const std::array paths{shard(folder, "a.sqlite", sampleRun("box", "pt"), {{"cpu", "x, y"}}, sampleScene()),
+                         shard(folder, "b.sqlite", sampleRun("box", "lt"), {{"cpu", "y, z"}}, sampleScene())};
+  EXPECT_EQ(readResults(paths).campaign.at("cpu"), "x, y, z");
+}
+
+TEST(ReadResults, aNoiseFloorThatIsNoNumberIsTheSameInAllShards) {
+  const TemporaryFolder folder;
+  SceneRecord scene = sampleScene();
+  scene.noiseFloors["q"] = std::numeric_limits<double>::quiet_NaN();
+  const std::array paths{shard(folder, "a.sqlite", sampleRun("box", "pt"), {{"spp", "4"}}, scene),
+                         shard(folder, "b.sqlite", sampleRun("box", "lt"), {{"spp", "4"}}, scene)};
+  EXPECT_EQ(readResults(paths).runs.size(), 2u);
 }
 
 TEST(ReadResults, aFolderStandsForItsFileOrItsShards) {
