@@ -56,7 +56,8 @@ void showPlan(ProgressKind kind, const CampaignPlan& plan) {
     tell("{}", jsonText(line));
     return;
   }
-  std::string text = fmt::format("{} runs, {} of them done", plan.runs, plan.done);
+  std::string text = plan.runs == 1 ? fmt::format("1 run, {} done", plan.done)
+                                    : fmt::format("{} runs, {} of them done", plan.runs, plan.done);
   if (plan.renderSeconds > 0) text += fmt::format("; {} of render time ahead", durationText(plan.renderSeconds));
   if (!plan.unreferenced.empty()) text += fmt::format("; references to render: {}", fmt::join(plan.unreferenced, " "));
   if (plan.referenceSeconds > 0) text += fmt::format(", {}", durationText(plan.referenceSeconds));
@@ -85,7 +86,9 @@ void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& pr
     }
     const json stats = json::parse(run.stats);
     const auto leftOut = stats.value("snapshots_left_out", 0U);
-    if (leftOut > 0) outcome += fmt::format("; {} snapshots before the first whole image left out", leftOut);
+    if (leftOut > 0) {
+      outcome += fmt::format("; {} snapshot{} before the first whole image left out", leftOut, leftOut == 1 ? "" : "s");
+    }
     for (const json& doubt : stats.value("doubts", json::array())) outcome += "; doubt: " + doubt.get<std::string>();
   }
   tell("[{}/{}] {} left  {} {} seed {}: {}", progress.done, progress.total, durationText(progress.secondsLeft),

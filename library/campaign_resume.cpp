@@ -60,6 +60,9 @@ std::optional<CampaignOptions> extended(const CampaignOptions& before, const std
   }
   // Other options: the new value must ask for as much or more. Options without an order cannot change.
   after.defining[name] = words;
+  // Each of these says how long runs are, so the one takes the place of the other.
+  if (name == "--time") after.defining.erase("--time-factor");
+  if (name == "--time-factor") after.defining.erase("--time");
   if (name == "--seeds") {
     return campaignSettings(after).seeds >= campaignSettings(before).seeds ? std::optional(after) : std::nullopt;
   }

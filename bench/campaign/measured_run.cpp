@@ -134,6 +134,12 @@ class SnapshotTaker {
     const double seconds = std::min(statistics.renderSeconds, settings_.seconds.value_or(statistics.renderSeconds));
     SnapshotRecord& snapshot = run_.snapshots.emplace_back();
     snapshot.number = std::max(number + 1, request_.schedule.firstAfter(seconds, statistics.iterations)) - 1;
+    // At the end of the run it is at least the count of those that are due before: one iteration may go past the last
+    // of them and the end. What is due at the end is not before it, whatever rounding says.
+    if (settings_.seconds && statistics.renderSeconds >= *settings_.seconds) {
+      const unsigned before = request_.schedule.firstAfter(*settings_.seconds * (1 - 1e-9), 0);
+      snapshot.number = std::max(snapshot.number, before);
+    }
     snapshot.renderSeconds = statistics.renderSeconds;
     snapshot.iterations = statistics.iterations;
     snapshot.file = (fs::path("images") / fmt::format("{}.{:04}.exr", stemOf(run_), snapshot.number)).string();

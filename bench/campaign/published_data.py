@@ -6,8 +6,10 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import sqlite3
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 UNDER_WAY = "under-way"  # folder beside the committed data of finished scenes, with those of the others
 MEASURED = ["rmse", "relmse", "ssim", "q_mos", "flip", "unbiased_mse", "wall_seconds", "cpu_seconds"]
 RUN_FACTS = [
@@ -15,6 +17,18 @@ RUN_FACTS = [
     *("render_seconds", "render_wall_seconds", "cpu_seconds", "clock", "asked_seconds", "mlt", "direct_pass", "sampler"),
     *("precision", "commit", "cpu"),
 ]
+
+
+def scene_list(settings, begun):
+    """The scenes of the setting "a b". Names with blanks are found among these, and those that the options have as files."""
+    typed = [pathlib.PurePath(word).stem for word in json.loads(settings.get("options", "{}")).get("scenes", [])]
+    names = "|".join(map(re.escape, sorted({*begun, *typed}, key=len, reverse=True)))
+    return re.findall(rf"(?<!\S)(?:{names}|\S+)(?!\S)" if names else r"\S+", settings["scenes"])
+
+
+def per_scene(value):
+    """(scene, value) of a setting "a=1 b=2", where names may have blanks; of one for all scenes, "1", ("", value)."""
+    return re.findall(r"(?:^| )(.+?)=(log|[\d.e+-]+)(?= |$)", value) or [("", value)]
 
 
 class Results:
@@ -28,7 +42,9 @@ class Results:
             return [row for row in database.execute(query) if scenes is None or row[0] in scenes]
 
         self.settings = dict(database.execute("SELECT key, value FROM campaign"))
-        self.own_references = self.settings.pop("reference_folder", None) is not None  # which is of this machine
+        folder, given = self.settings.pop("reference_folder", None), ROOT / "scenes" / "references"
+        # of this machine, and not of the repository
+        self.own_references = folder is not None and not pathlib.Path(folder).resolve().is_relative_to(given.resolve())
         done = rows("SELECT scene, method, seed, stats FROM run WHERE state = 'done'")
         self.runs = [(*run, json.loads(stats)) for *run, stats in done]
         # stats where the run had no time for a whole image
@@ -50,7 +66,7 @@ class Results:
     def ahead(self):
         """The (scene, method) that lack a seed and are not refused, of the scenes begun and of those asked for."""
         begun = list(self.hashes)
-        others = [word for word in self.settings["scenes"].split() if word not in " ".join(begun).split()]
+        others = [scene for scene in scene_list(self.settings, begun) if scene not in begun]
         done = collections.Counter((scene, method) for scene, method, *_ in self.runs)
         refused = {(scene, method) for scene, method, *_ in self.refused}
         pairs = itertools.product(begun + others, self.settings["methods"].split())
@@ -62,26 +78,28 @@ def without_scenes(folder, scenes, part):
     whole, database = sqlite3.connect(folder / "results.sqlite"), sqlite3.connect(part / "results.sqlite")
     whole.backup(database)  # also while the campaign goes on
     whole.close()
+    begun = [name for (name,) in database.execute("SELECT name FROM scene")]
     for scene in scenes:
         for table in ("measurement", "snapshot", "stage"):
             database.execute(f"DELETE FROM {table} WHERE run IN (SELECT id FROM run WHERE scene = ?)", [scene])
         for table in ("run", "noise_floor", "path_class", "bias"):
             database.execute(f"DELETE FROM {table} WHERE scene = ?", [scene])
         database.execute("DELETE FROM scene WHERE name = ?", [scene])
-    # Settings that name each scene: "a b", or "a=1 b=2".
-    gone = " ".join(scenes).split()  # a name may have blanks
-    for key in ("scenes", "time", "snapshots"):
-        for (value,) in database.execute("SELECT value FROM campaign WHERE key = ?", [key]).fetchall():
-            kept = " ".join(word for word in value.split() if word.partition("=")[0] not in gone)
-            database.execute("UPDATE campaign SET value = ? WHERE key = ?", [kept, key])
-    for (value,) in database.execute("SELECT value FROM campaign WHERE key = 'options'").fetchall():
-        options = json.loads(value)
+    # Settings that name each scene.
+    settings = dict(database.execute("SELECT key, value FROM campaign"))
+    kept = {"scenes": " ".join(scene for scene in scene_list(settings, begun) if scene not in scenes)}
+    for key in settings.keys() & {"time", "snapshots"}:
+        parts = [(scene, value) for scene, value in per_scene(settings[key]) if scene not in scenes]
+        kept[key] = " ".join(f"{scene}={value}" if scene else value for scene, value in parts)
+    if "options" in settings:
+        options = json.loads(settings["options"])
         # Words as they were typed: names or files.
         options["scenes"] = [word for word in options.get("scenes", []) if pathlib.PurePath(word).stem not in scenes]
         crops = [word for word in options.pop("--crop", []) if word.rpartition(":")[0] not in scenes]
         if crops:
             options["--crop"] = crops
-        database.execute("UPDATE campaign SET value = ? WHERE key = 'options'", [json.dumps(options)])
+        kept["options"] = json.dumps(options)
+    database.executemany("UPDATE campaign SET value = ? WHERE key = ?", [(value, key) for key, value in kept.items()])
     database.commit()
     named = {file for (file,) in database.execute("SELECT reference_file FROM scene UNION SELECT file FROM snapshot")}
     database.close()

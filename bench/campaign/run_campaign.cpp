@@ -183,13 +183,22 @@ class Campaign {
     return known.has_value();
   }
 
-  // The reference of a known scene. Throws if runs of the scene were measured against another one: references differ in
-  // their noise floors.
+  // The reference of a known scene. Throws if the file is none of it, or if runs of the scene were measured against
+  // another one: references differ in their noise floors.
   Reference knownReference(const CampaignScene& entry) const {
     const fs::path file = settings_.out / referenceFile(entry.name);
     Reference found = readReference(file);
     const CampaignResults results = readResults(resultsFile(settings_));
     const SceneRecord* known = results.findScene(entry.name);
+    std::string wrong = whyNoReference(found);
+    if (wrong.empty() && known != nullptr &&
+        (found.info.sceneHash != known->hash || found.mean.width != known->width ||
+         found.mean.height != known->height)) {
+      wrong = "is of another scene or size";
+    }
+    if (!wrong.empty()) {
+      throw ResultsFileError(fmt::format("{}: {}; expected the reference of {}", file.string(), wrong, entry.name));
+    }
     const bool measured = std::ranges::any_of(
         results.runs, [&](const RunRecord& run) { return run.scene == entry.name && !run.snapshots.empty(); });
     const auto text = [](const MetricValues& floors) { return nlohmann::json(floors).dump(); };  // the same for NaN
@@ -346,6 +355,7 @@ class Campaign {
         runs.push_back(&run);
         last = std::min(last, run.snapshots.back().number);
       }
+      if (runs.size() < 2) continue;  // nothing to take apart
       const auto known = [&](const BiasRecord& bias) {
         return bias.scene == entry.name && bias.method == name && bias.seeds == runs.size() && bias.number == last;
       };

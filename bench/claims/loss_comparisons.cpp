@@ -59,19 +59,19 @@ Comparison LossComparisons::notLarger(const std::string& metric, const std::stri
 Comparison LossComparisons::faster(const std::string& metric, const std::string& a, const std::string& b) const {
   const std::vector<double> lossesA = scene_.logLosses(a, metric), lossesB = scene_.logLosses(b, metric);
   if (lossesA.empty() || lossesB.empty()) return {V::notJudged, 0, nameOf(metric) + " was not measured"};
-  // The larger final loss is the best one that both reach.
-  const double loss = std::max(meanOfLog(lossesA), meanOfLog(lossesB));
-  const std::vector<double> timesA = scene_.logTimes(a, metric, loss), timesB = scene_.logTimes(b, metric, loss);
+  // The larger final loss is the best one that both reach. It stays a logarithm, so that rounding decides no tie.
+  const double wanted = std::max(meanBand(lossesA).mean, meanBand(lossesB).mean);
+  const std::vector<double> timesA = scene_.logTimes(a, metric, wanted), timesB = scene_.logTimes(b, metric, wanted);
   // A logarithm of time varies by that of a loss over the slope of the curve.
   Band band = differenceBand(timesB, timesA);
   if (timesA.size() == 1 || timesB.size() == 1) {
     const double flattest = std::min(steepness(a, metric, meanOfLog(timesA)), steepness(b, metric, meanOfLog(timesB)));
     band.halfWidth = scene_.lossDifference(metric, a, b).halfWidth / flattest;
   }
-  Comparison result =
-      above(band, 0,
-            fmt::format("to {} {:.3g} {} takes {}, {} {}", nameOf(metric), scoreOfLoss(metric, loss), scene_.rowOf(a),
-                        secondsText(meanOfLog(timesA)), scene_.rowOf(b), secondsText(meanOfLog(timesB))));
+  Comparison result = above(
+      band, 0,
+      fmt::format("to {} {:.3g} {} takes {}, {} {}", nameOf(metric), scoreOfLoss(metric, std::exp(wanted)),
+                  scene_.rowOf(a), secondsText(meanOfLog(timesA)), scene_.rowOf(b), secondsText(meanOfLog(timesB))));
   // A seed that has the loss at its first snapshot may have had it sooner, so its method is not shown to be slower.
   const auto isUpperBound = [&](const std::string& method, const std::vector<double>& times) {
     const std::vector<double> first = scene_.logTimes(method, metric, std::numeric_limits<double>::infinity());

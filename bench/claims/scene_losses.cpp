@@ -163,8 +163,7 @@ std::optional<double> SceneLosses::floorLoss(const std::string& metric) const {
   return lossOf(metric, scene->noiseFloors.at(metric));
 }
 
-std::vector<double> SceneLosses::logTimes(const std::string& method, const std::string& metric, double loss) const {
-  const double wanted = std::log(std::max(loss, kSmallestLoss));
+std::vector<double> SceneLosses::logTimes(const std::string& method, const std::string& metric, double wanted) const {
   return perSeed(method, [&](const RunRecord& run) -> std::optional<double> {
     // Follow the snapshots, skipping those without a score, to the time from which on all are as good as wanted: an
     // image without what a method finds late can be better than the image with its noise.

@@ -53,10 +53,10 @@ class SceneLosses {
   // The loss that the reference's own noise gives; nothing where that is not known, and for losses without it.
   std::optional<double> floorLoss(const std::string& metric) const;
 
-  // The logarithm of the time from which on each seed has at most this loss, between snapshots by straight lines over
-  // logarithms; of a seed that has more at its end, the logarithm of that. The first snapshot's time where it is there
-  // already.
-  std::vector<double> logTimes(const std::string& method, const std::string& metric, double loss) const;
+  // The logarithm of the time from which on each seed has at most the loss of this logarithm, between snapshots by
+  // straight lines over logarithms; of a seed that has more at its end, the logarithm of that. The first snapshot's
+  // time where it is there already.
+  std::vector<double> logTimes(const std::string& method, const std::string& metric, double wanted) const;
 
   // d log(loss) / d log(time) of each seed's curve from a quarter of this time to four times it, by least squares;
   // empty where a curve has fewer than three snapshots there.

@@ -131,6 +131,36 @@ class Resuming(Converge):
         result = self.converge(*first, "--resume", "--progress", "none", expect=INPUT)
         self.assert_one_error_line(result, r".*room\.xml: the scene changed since this campaign began")
 
+    def test_another_image_is_not_taken_for_the_reference_of_a_scene_without_runs(self):
+        tiny = ["--methods", "pt", "--size", "16x12", "--spp", "1", "--seeds", "1", "--out", "a"]
+        self.converge("cornell-diffuse", *tiny)
+        with contextlib.closing(sqlite3.connect(self.results("a"))) as database:
+            for table in ("measurement", "snapshot", "stage", "run"):
+                database.execute(f"DELETE FROM {table}")
+            database.commit()
+        self.run_wavecrest("render", "cornell-diffuse", "--size", "16x12", "--spp", "1", "-o", "plain.exr")
+        self.run_wavecrest("reference", "cornell-mirror", "--size", "16x12", "--spp", "1", "-o", "mirror.exr")
+        self.run_wavecrest("reference", "cornell-diffuse", "--size", "20x12", "--spp", "1", "-o", "wide.exr")
+        for file, why in (
+            ("plain.exr", "is a plain image, without the two halves of a reference"),
+            ("mirror.exr", "is of another scene or size"),
+            ("wide.exr", "is of another scene or size"),
+        ):
+            shutil.copyfile(self.path(file), self.path("a/references/cornell-diffuse.exr"))
+            result = self.converge("--out", "a", "--resume", "--progress", "none", expect=INPUT)
+            self.assert_one_error_line(result, rf"a/references/cornell-diffuse\.exr: {why}; expected the reference of cornell-diffuse")
+
+    def test_what_is_done_needs_no_reference_also_where_a_row_is_refused(self):
+        lens = '"thinlens"><float name="aperture_radius" value="0.1"/><float name="focus_distance" value="3"/>'
+        scene = self.write("room.xml", ROOM.replace("RADIANCE", "1").replace('"perspective">', lens))
+        tiny = ["--methods", "pt,mlt-pathspace", "--size", "16x12", "--spp", "1", "--seeds", "2"]
+        self.converge(scene, *tiny, "--out", "a")
+        with contextlib.closing(sqlite3.connect(self.results("a"))) as database:
+            refused = database.execute("SELECT method, state FROM run WHERE state = 'refused'").fetchall()
+        self.assertEqual(refused, 2 * [("mlt-pathspace", "refused")])
+        os.remove(self.path("a/references/room.exr"))
+        self.converge("--out", "a", "--resume")
+
 
 class Extending(Converge):
     """A finished campaign that grows has the rows of one that was begun that large."""
@@ -286,6 +316,12 @@ class Extending(Converge):
         self.assertEqual(time, "0.175")
         self.assertGreaterEqual(end, 0.175)
         self.assertLess(end, 2)
+        # A time takes the place of the factor, and a factor that of the time.
+        self.converge("--out", "a", "--resume", "--time", "0.1s", expect=USAGE)
+        for longer, time in (["--time", "0.3s"], "0.3"), (["--time-factor", "0.1"], "0.35"):
+            self.converge("--out", "a", "--resume", *longer)
+            with contextlib.closing(sqlite3.connect(self.results("a"))) as database:
+                self.assertEqual(database.execute("SELECT value FROM campaign WHERE key = 'time'").fetchall(), [(time,)])
 
     def test_a_run_too_short_for_an_image_is_told_and_made_longer(self):
         options = ["--methods", "pt,bpt,mlt", "--size", "32x24", "--seeds", "1", "--time", "0.000000001s"]

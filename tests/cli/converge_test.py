@@ -138,6 +138,11 @@ class Planning(Converge):
         self.assertEqual((plan["total"], plan["done"], plan["render_seconds"]), (6, 6, 0))
         self.assertEqual(plan["unreferenced"], [])
 
+    def test_runs_are_counted_in_words_of_their_number(self):
+        one = ["cornell-diffuse", "--methods", "pt", "--size", "16x12", "--spp", "1", "--out", "a"]
+        self.assertIn("1 run, 0 done; ", self.converge(*one, "--seeds", "1").stderr)
+        self.assertIn("2 runs, 1 of them done", self.converge("--out", "a", "--resume", "--seeds", "2").stderr)
+
 
 class Checks(Converge):
     def refuting(self):

@@ -104,6 +104,31 @@ class PublishParts(unittest.TestCase):
         self.assertNotIn(said, conditions(1))
         self.assertTrue(conditions(1, ("pt", "mlt-pathspace")).endswith(said))
 
+    def test_times_of_scenes_whose_names_have_blanks(self):
+        publish = program_module("bench/campaign/publish")
+        campaign = types.SimpleNamespace(settings={"time": "my room=720 cornell-diffuse=360"})
+        self.assertEqual(publish.run_time(campaign), "720 s a run in my room, 360 s a run in cornell-diffuse")
+        campaign.settings = {"time": "12"}
+        self.assertEqual(publish.run_time(campaign), "12 s a run")
+
+    def test_findings_are_counted_in_words_of_their_number(self):
+        publish = program_module("bench/campaign/publish")
+        verdicts = ["holds", "does not hold", "undecided", *3 * ["not reached in this time"]]
+
+        def tally(times):
+            return publish.tally(types.SimpleNamespace(claims=[{"verdict": verdict} for verdict in times * verdicts]))
+
+        self.assertEqual(tally(1), "1 holds, 1 does not, 3 not in this time, 1 is undecided")
+        self.assertEqual(tally(2), "2 hold, 2 do not, 6 not in this time, 2 are undecided")
+
+    def test_references_are_estimated_by_seconds_above_0(self):
+        program = CAMPAIGN / "remake-references"
+        for seconds in ("0", "-1", "nan", "inf"):
+            command = [sys.executable, program, f"--estimate={seconds}", "no-such-scene"]
+            result = subprocess.run(command, check=False, capture_output=True, text=True)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(f"--estimate: '{seconds}'; expected seconds above 0\n", result.stderr)
+
     def test_long_times_are_no_powers_of_ten(self):
         publish = program_module("bench/campaign/publish")
         settings = {"time": "x=1440 y=2460 z=59.44", "size": "1x1", "seeds": "1"}

@@ -10,7 +10,7 @@ import sys
 import unittest
 
 from harness import WAVECREST
-from publish_harness import MADE_UP, RESTORE, PublishTest  # which makes curves be found
+from publish_harness import MADE_UP, RESTORE, ROOT, PublishTest  # which makes curves be found
 
 import curves
 
@@ -154,11 +154,48 @@ class Publishing(PublishTest):
         self.assertIn("| scene | rows | SSIM 0.9 | SSIM 0.95 |", page)
         self.assertIn("| cornell-diffuse | study<br>all | bpt 10 s<br>vcm-auto 7.2 s | bpt 32 s<br>vcm-auto 10 s", page)
         speeds = page.split("## Speed-up over pt")[1].split("## ")[0]
+        self.assertIn("– where one of them has none, and where a mean would be of bounds of both kinds; ≥", speeds)
         self.assertIn("| scene | bpt | vcm-auto |", speeds)
         self.assertIn("| cornell-diffuse | 1.3 | 10 |", speeds)
         self.assertIn("| veach-door | – | – |", speeds)
         self.assertIn("| lafortune-room | ≥ 100 | – |", speeds)
         self.assertRegex(speeds, r"geometric mean\*\* \| ≥ [^|]* <sub>of 4</sub> \| ≤ [^|]* <sub>of 3</sub> \|")
+
+    def test_references_of_the_repository_are_not_made_first(self):
+        self.made_up_campaign()
+        for folder, made in ((ROOT / "scenes" / "references", 0), (self.folder / "references", 1)):
+            database = sqlite3.connect(self.path("a/results.sqlite"))
+            database.execute("INSERT OR REPLACE INTO campaign VALUES('reference_folder', ?)", [str(folder)])
+            database.commit()
+            database.close()
+            self.assertEqual(self.publish().returncode, 0)
+            page = self.read("standard/README.md")
+            self.assertEqual(page.count("bench/campaign/remake-references --size"), made)
+            self.assertEqual(page.count(" --reference "), made)
+            self.assertIs(json.loads(self.read("standard/campaign.json"))["own_references"], bool(made))
+
+    def test_names_of_scenes_may_have_blanks(self):
+        self.made_up_campaign({name: MADE_UP["cornell-diffuse"] for name in ("my room", "my house")})
+        database = sqlite3.connect(self.path("a/results.sqlite"))
+        database.execute("INSERT OR REPLACE INTO campaign VALUES('time', 'my room=100 my house=50')")
+        database.execute("INSERT OR REPLACE INTO campaign VALUES('snapshots', 'my room=log my house=5')")
+        # The second one is under way.
+        late = "SELECT id FROM run WHERE scene = 'my house' AND method = 'pt'"
+        for table in ("measurement", "snapshot"):
+            database.execute(f"DELETE FROM {table} WHERE run IN ({late})")
+        database.execute(f"DELETE FROM run WHERE id IN ({late})")
+        database.commit()
+        database.close()
+        self.assertIn("publish: my house pt: neither rendered nor refused; expected", self.publish().stderr)
+        result = self.publish("--under-way")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        page, settings = self.read("standard/README.md"), json.loads(self.read("standard/campaign.json"))["settings"]
+        self.assertIn("](my%20room.svg)", page)
+        self.assertIn(", 100 s a run, ", page)
+        self.assertNotIn("my house", page)
+        self.assertTrue(pathlib.Path(self.path("standard/my room.svg")).exists())
+        asked = [settings[key] for key in ("scenes", "time", "snapshots")]
+        self.assertEqual(asked, ["my room", "my room=100", "my room=log"])
 
     def test_figures_have_what_was_measured(self):
         self.made_up_campaign()
@@ -230,9 +267,9 @@ END
         pathlib.Path(stub).chmod(0o755)
         result = self.publish(program=stub)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("1 hold, 2 do not, 1 not in this time, 1 are undecided", result.stdout)
+        self.assertIn("1 holds, 2 do not, 1 not in this time, 1 is undecided", result.stdout)
         self.assertIn("without an explanation: cornell-diffuse.all-converge", result.stdout)
-        self.assertIn("The study's findings: 1 hold, 2 do not, 1 not in this time, 1 are undecided", self.read("README.md"))
+        self.assertIn("The study's findings: 1 holds, 2 do not, 1 not in this time, 1 is undecided", self.read("README.md"))
         page = self.read("standard/README.md")
         paragraphs = [line for line in page.splitlines() if line.startswith("The study: ")]
         self.assertEqual(len(paragraphs), 2, "one of the scene, one of all scenes")

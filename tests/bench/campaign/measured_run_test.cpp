@@ -154,6 +154,22 @@ TEST_F(MeasuredRunTest, anImageIsMeasuredOnceUnderTheLastNumberThatIsDue) {
   EXPECT_EQ(before, 4u);
 }
 
+// One iteration with a photon map passes the only snapshot that is due, and the end.
+TEST_F(MeasuredRunTest, runsOfOneTimeEndWithOneNumber) {
+  RunRecord run;
+  run.state = RunState::refused;
+  for (int k = 1; run.state == RunState::refused; ++k) {
+    ASSERT_LT(k, 16) << run.reason;
+    const double seconds = 1e-4 * (1 << k);
+    run = this->run(Method::vcm, std::nullopt, seconds, SnapshotSchedule::every(0.75 * seconds)).value();
+  }
+  EXPECT_EQ(run.snapshots.back().number, 1u);
+  // What is due at the end is the end.
+  run = this->run(Method::pt, std::nullopt, 0.05, SnapshotSchedule::every(0.05 / 3)).value();
+  ASSERT_FALSE(run.snapshots.empty());
+  EXPECT_EQ(run.snapshots.back().number, 2u);
+}
+
 TEST_F(MeasuredRunTest, aTimeTooShortForOneImageIsRefusedAndTold) {
   for (const MethodEntry& method : kMethods) {
     const RunRecord run = this->run(method.method, std::nullopt, 1e-9, SnapshotSchedule::every(5e-10)).value();

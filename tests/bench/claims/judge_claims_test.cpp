@@ -57,6 +57,11 @@ TEST(JudgeClaims, fasterIsAboutTheTimeToEqualQuality) {
   EXPECT_EQ(atOnce.verdict(faster), kUndecided);
   EXPECT_EQ(MadeUp(atOnce).delay("lt", 1.1).verdict(faster), kUndecided) << "lt may have had it before its snapshot";
   EXPECT_EQ(MadeUp(atOnce).delay("pt", 1.1).verdict(faster), kUndecided);
+  for (int k = 1; k < 100; ++k) {
+    const double loss = 1 + 0.01 * k;
+    const MadeUp tie = MadeUp().with("pt", "rmse", {loss, loss}, 1).with("lt", "rmse", {loss, loss}, 1);
+    EXPECT_EQ(MadeUp(tie).delay("lt", 1.1).verdict(faster), kUndecided) << loss << ": rounding decides nothing";
+  }
   // An upper bound of the sooner one decides: pt has at once what lt has at the end.
   EXPECT_EQ(MadeUp().with("pt", "rmse", {1, 1}, 1).with("lt", "rmse", {1, 1}, 2).verdict(faster), kHolds);
   EXPECT_EQ(MadeUp().with("pt", "rmse", {1, 1}, 2).with("lt", "rmse", {1, 1}, 1).verdict(faster), kFails);
