@@ -58,10 +58,14 @@ int runMerge(const MergeOptions& options) {
   }
   // Images, reference, checkpoint and statistics.
   if (!options.outputs.empty()) {
-    // Chains have made a pass once they have made as many mutations as there are pixels.
+    // Chains have made a pass once they have made as many mutations as there are pixels, and their direct pass, whose
+    // samples are dealt out to all parts, once each pixel has one.
     const FilmArea& area = merged.film->area();
+    const nlohmann::ordered_json& render = merged.header.render;
+    const bool chains = !merged.header.holds.chains.empty();
+    const bool samples = !chains || (render.value("direct_pass", false) && render.value("mlt", "") != "pssmlt");
     const bool whole =
-        merged.header.holds.chains.empty() ? merged.film->minSamples() != 0 : merged.film->splatCount() >= area.size();
+        (!samples || merged.film->minSamples() != 0) && (!chains || merged.film->splatCount() >= area.size());
     if (!whole) throw InputError("no whole pass over the film: no image was written; expected parts of at least one");
     const Image image{.width = area.width, .height = area.height, .channels = 3, .pixels = merged.film->resolve()};
     for (const std::string& name : options.outputs) {

@@ -12,7 +12,6 @@
 #include "cli/file_check.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
-#include "cli/pinning.h"
 #include "cli/progress.h"
 #include "cli/render_messages.h"
 #include "cli/render_options.h"
@@ -167,7 +166,7 @@ void RenderRun::load() {
   settings_ = ranks_.share(settingsOfRender(options_, scene_), scene_, kind_);
   settings_.measureStages = measures;
   if (earlier_) earlier_->cutAlike(settings_);
-  if (options_.pin) settings_.placement = pinnedPlacement(settings_.threads, kind_);
+  if (options_.pin) settings_.placement = ranks_.pinned(settings_.threads, kind_);
   if (options_.until.any()) {
     const FilmArea film = filmOutline(scene_.film);
     until_.emplace(untilGoal(options_, settings_, film));
@@ -182,6 +181,9 @@ void RenderRun::build() {
   tellPlan(options_, scene_, settings_, kind_, statistics.renderedBy(settings_.method), session_->memoryPlan(),
            session_->film().spreads());
   showChoice(kind_, settings_.method, statistics.choice);
+  if (ranks_.several() && statistics.guide) {
+    note(kind_, "gpt: each process learns from its own share of the iterations");
+  }
   live_.emplace(options_.live, scene_, settings_, kind_, session_);
   outputs_.emplace(names_, scene_, settings_, loadSeconds_, kind_);
   goOn(earlier_, options_.checkpoint, scene_, settings_, kind_, *session_, *outputs_);
@@ -213,10 +215,12 @@ int RenderRun::runTogether() {
     return ranks_.leave(kExitDone);
   }
   ranks_.together([this] { build(); });
-  if (ranks_.several()) firstSnapshot_ = ranks_.agree(renderIdentity(scene_, settings_, *session_), firstSnapshot_);
+  if (ranks_.several()) {
+    firstSnapshot_ = ranks_.agree(renderIdentity(scene_, settings_, *session_), *session_, firstSnapshot_, *outputs_);
+  }
   // Renders, with a checkpoint every now and then.
   try {
-    const RenderRanks::Watch watch(ranks_, *guard_, *session_);
+    const RenderRanks::Watch watch(ranks_, *guard_, *session_, *outputs_);
     std::optional<CheckpointTimer> timer;
     if (!options_.checkpoint.file.empty()) timer.emplace(*guard_, checkpointing_->seconds());
     const Ending ending = render();

@@ -66,6 +66,8 @@ class RenderOutputs {
   bool writeCheckpoint(const Session& session, const std::string& file);
   // Takes over what writeCheckpoint has noted of an earlier part of the render.
   void goOnFrom(const nlohmann::ordered_json& notes, const Session& session);
+  // Of all processes of the render, where there are several.
+  void setResumedFrom(uint64_t iterations) { resumedFrom_ = iterations; }
   // The number of the next snapshot. Where an earlier part had another schedule, those that would have been due by now
   // are left out.
   unsigned nextSnapshot(const SnapshotSchedule& schedule, const Session& session);

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <utility>
 
 #include "bench/checkpoint/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/messages.h"
+#include "cli/pinning.h"
 
 namespace wavecrest {
 namespace {
@@ -106,9 +108,6 @@ RenderSettings RenderRanks::share(const RenderSettings& settings, const Scene& s
     warn(kind, fmt::format("--spp {}: {} processes share as many iterations; some of them have none",
                            *settings.iterations, ranks_->count()));
   }
-  if (mayLearn(settings)) {
-    note(kind, fmt::format("gpt: each of {} processes learns from its own share of the iterations", ranks_->count()));
-  }
   RenderSettings own = settingsOfJointShare(settings, ranks_->rank(), ranks_->count());
   // The budget is of all that a process takes.
   const uint64_t sums = bytesOfSums(scene, own, ranks_->count());
@@ -118,6 +117,17 @@ RenderSettings RenderRanks::share(const RenderSettings& settings, const Scene& s
   }
   if (own.memoryBytes) *own.memoryBytes -= sums;
   return own;
+}
+
+Placement RenderRanks::pinned(uint32_t threads, ProgressKind kind) const {
+  if (!several()) return pinnedPlacement(threads, kind);
+  const auto own = places_.begin() + ranks_->rank();
+  const auto before = std::count(places_.begin(), own, *own), all = std::count(places_.begin(), places_.end(), *own);
+  Placement placement = pinnedPlacement(static_cast<uint32_t>(all) * threads, kind);
+  if (placement.cpus.empty()) return placement;
+  const auto first = placement.cpus.begin() + before * threads;
+  placement.cpus = std::vector<uint32_t>(first, first + threads);
+  return placement;
 }
 
 void RenderRanks::cutAlike(RenderSettings& settings) {
@@ -146,28 +156,43 @@ void RenderRanks::together(const std::function<void()>& step) {
   }
 }
 
-unsigned RenderRanks::agree(const Json& identity, unsigned firstSnapshot) {
+unsigned RenderRanks::agree(const Json& identity, const Session& session, unsigned firstSnapshot,
+                            RenderOutputs& outputs) {
   if (!several()) return firstSnapshot;
-  const std::vector<std::string> all = ranks_->exchange(Json{{"render", identity}, {"snapshot", firstSnapshot}}.dump());
+  const RenderStatistics statistics = session.statistics();
+  const std::vector<std::string> all = ranks_->exchange(
+      Json{{"render", identity}, {"snapshot", firstSnapshot}, {"iterations", statistics.iterations}}.dump());
   unsigned first = 0;
+  std::vector<uint64_t> iterations;
   together([&] {
     const Json wanted = Json::parse(all.front()).at("render");
     for (size_t rank = 0; rank < all.size(); ++rank) {
       const Json one = Json::parse(all[rank]);
-      requireSameRender(fmt::format("process {} of {}", rank + 1, all.size()), one.at("render"), wanted, kShareKeys);
+      requireSameRender(fmt::format("process {} of {}", rank + 1, all.size()), one.at("render"), wanted, kShareKeys,
+                        "expected the same program and settings in all processes (where machines differ, one --isa and "
+                        "--threads)");
       first = std::max(first, one.at("snapshot").get<unsigned>());
+      iterations.push_back(one.at("iterations").get<uint64_t>());
     }
   });
+  // Shares of mlt are chains, in all iterations.
+  if (this->first()) {
+    outputs.setResumedFrom(statistics.chains ? *std::min_element(iterations.begin(), iterations.end())
+                                             : std::accumulate(iterations.begin(), iterations.end(), uint64_t{0}));
+  }
   return first;
 }
 
-RenderRanks::Watch::Watch(RenderRanks& ranks, InterruptGuard& guard, const Session& session) : ranks_(ranks) {
+RenderRanks::Watch::Watch(RenderRanks& ranks, InterruptGuard& guard, const Session& session, RenderOutputs& outputs)
+    : ranks_(ranks) {
   if (!ranks_.several()) return;
   ranks_.area_ = session.film().area();
   ranks_.ranks_->watch({.interrupted = [&guard] { return guard.interrupted(); },
+                        .saveWanted = [&guard] { return guard.takeSaveRequest(); },
                         .stop = [&guard] { guard.stop(); },
                         .attend = [&guard] { guard.requestAttention(); },
-                        .paths = [&session] { return session.progressPaths(); }});
+                        .paths = [&session] { return session.progressPaths(); },
+                        .rescue = [&ranks, &session, &outputs] { ranks.saveShare(session, outputs); }});
 }
 
 RenderRanks::Watch::~Watch() {
@@ -214,7 +239,7 @@ void RenderRanks::write(RankSum sum, RenderOutputs& outputs) {
 }
 
 void RenderRanks::saveShare(const Session& session, RenderOutputs& outputs) {
-  shareSaved_ = outputs.writeCheckpoint(session, emergencyFile_);
+  if (!shareSaved_) shareSaved_ = outputs.writeCheckpoint(session, emergencyFile_);
 }
 
 std::optional<Rendered> RenderRanks::whole(const Session& session, RenderOutputs& outputs) {
@@ -243,7 +268,7 @@ int RenderRanks::leave(int exitCode) {
   }
   // Before MPI ends: with a launcher that is ending its processes, that lasts until the process is killed.
   std::error_code ignored;
-  if (shareSaved_ && (all == kExitDone || all == kExitInterrupted)) fs::remove(emergencyFile_, ignored);
+  if (shareSaved_.value_or(false) && (all == kExitDone || all == kExitInterrupted)) fs::remove(emergencyFile_, ignored);
   ranks_->finish();
   return all;
 }

@@ -16,6 +16,7 @@
 #include "cli/progress.h"
 #include "cli/render_options.h"
 #include "cli/render_outputs.h"
+#include "engine/tasks/placement.h"
 
 namespace wavecrest {
 
@@ -36,17 +37,22 @@ class RenderRanks {
   void adapt(RenderOptions& options);
   // The settings of this process' share.
   RenderSettings share(const RenderSettings& settings, const Scene& scene, ProgressKind kind) const;
+  // The placement of this process' threads: those of processes that may run on the same processors lie beside them.
+  Placement pinned(uint32_t threads, ProgressKind kind) const;
   // Has all processes cut paths as the first one does: last bits may depend on it.
   void cutAlike(RenderSettings& settings);
   // Runs a step that every process runs. Where it fails in one, the first says so, and all throw SharedFailure.
   void together(const std::function<void()>& step);
-  // Requires that all render the same, and returns the number of the first snapshot for all.
-  unsigned agree(const nlohmann::ordered_json& identity, unsigned firstSnapshot);
+  // Requires that all render the same, and returns the number of the first snapshot for all. The first process' outputs
+  // get the iterations that the processes go on from.
+  unsigned agree(const nlohmann::ordered_json& identity, const Session& session, unsigned firstSnapshot,
+                 RenderOutputs& outputs);
 
-  // While it lives, others hear of signals and paths of the session that renders, and this process of theirs.
+  // While it lives, others hear of signals and paths of the session that renders, and this process of theirs. The share
+  // is saved where all are to stop while this process, which is done, waits for others.
   class Watch {
    public:
-    Watch(RenderRanks& ranks, InterruptGuard& guard, const Session& session);
+    Watch(RenderRanks& ranks, InterruptGuard& guard, const Session& session, RenderOutputs& outputs);
     ~Watch();
     Watch(const Watch&) = delete;
     Watch& operator=(const Watch&) = delete;
@@ -66,7 +72,7 @@ class RenderRanks {
   // At the very end, with the exit codes of all: that of all processes.
   int leave(int exitCode);
 
-  // Without --checkpoint: saves the share before a sum that may fail. `leave` removes it.
+  // Without --checkpoint: saves the share, once, before a sum that may fail. `leave` removes it.
   void saveShare(const Session& session, RenderOutputs& outputs);
   // The file of that; empty with --checkpoint.
   const std::string& emergencyFile() const { return emergencyFile_; }
@@ -79,7 +85,7 @@ class RenderRanks {
   std::optional<Ranks> ranks_;
   std::vector<std::string> places_;  // of all processes (placeOfThisProcess)
   std::string emergencyFile_;
-  bool shareSaved_ = false;  // in emergencyFile_, by this process
+  std::optional<bool> shareSaved_;  // once this process has tried: whether it is in emergencyFile_
   uint32_t threads_ = 0;
   FilmArea area_;
 };

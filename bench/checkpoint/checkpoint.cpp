@@ -229,14 +229,14 @@ void Checkpoint::cutAlike(RenderSettings& settings) const {
 }
 
 void requireSameRender(const std::string& file, const Json& found, const Json& wanted,
-                       std::span<const std::string_view> except) {
+                       std::span<const std::string_view> except, const std::string& expected) {
   for (const auto& [key, value] : wanted.items()) {
     if (std::find(except.begin(), except.end(), key) != except.end()) continue;
     const auto own = found.find(key);
     if (own != found.end() && *own == value) continue;
     failCheckpoint(
         file, fmt::format("its {} is {}, not {}", key, own == found.end() ? "unknown" : wordOf(*own), wordOf(value)),
-        "expected the scene and settings that it was made with, or another file");
+        expected);
   }
 }
 

@@ -56,10 +56,12 @@ void writeCheckpoint(const std::string& file, const CheckpointHeader& header,
 
 // Throws CheckpointError: FILE: WRONG; EXPECTED.
 [[noreturn]] void failCheckpoint(const std::string& file, const std::string& wrong, const std::string& expected);
+constexpr const char* kSameRender = "expected the scene and settings that it was made with, or another file";
 // Throws with the first difference of what a checkpoint was made of, in the order of renderIdentity: the method before
-// its settings, the size before the hash. Keys in `except` may differ.
+// its settings, the size before the hash. Keys in `except` may differ. expected: the end of the message.
 void requireSameRender(const std::string& file, const nlohmann::ordered_json& found,
-                       const nlohmann::ordered_json& wanted, std::span<const std::string_view> except = {});
+                       const nlohmann::ordered_json& wanted, std::span<const std::string_view> except = {},
+                       const std::string& expected = kSameRender);
 // What says which share of the image a render is of; the rest of its identity is common to all.
 constexpr std::array<std::string_view, 3> kShareKeys{"first_iteration", "process", "part"};
 // What is expected of a file that is damaged.

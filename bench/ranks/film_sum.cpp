@@ -171,7 +171,9 @@ RenderStatistics FilmSum::statistics(RenderStatistics own) const {
   std::sort(chains.stuck.begin(), chains.stuck.end(),
             [](const StuckChain& a, const StuckChain& b) { return a.rejections > b.rejections; });
   if (chains.stuck.size() > kListedStuckChains) chains.stuck.resize(kListedStuckChains);
-  own.iterations = chains_.mutations / film_->area().size();
+  // The direct pass deals its samples out: without those of some processes there may be none.
+  const bool lacksDirect = chains.directPass && film_->minSamples() == 0;
+  own.iterations = lacksDirect ? 0 : chains_.mutations / film_->area().size();
   return own;
 }
 

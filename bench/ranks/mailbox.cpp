@@ -1,5 +1,6 @@
 #include "bench/ranks/mailbox.h"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -104,7 +105,8 @@ void Mailbox::work() {
     }
     std::unique_lock<std::mutex> lock(mutex_);
     if (!posted_.empty()) continue;
-    if (ending_ == Ending::finish && underWay_.empty()) {
+    const bool idle = underWay_.empty() && arriving_.empty();
+    if (ending_ == Ending::finish && idle) {
       lock.unlock();
       mpi_.finish();
       return;
@@ -114,7 +116,7 @@ void Mailbox::work() {
       if (underWay_.empty() || Clock::now() > giveUp) return;
     }
     if (sent || received) continue;
-    if (underWay_.empty()) {
+    if (idle) {
       changed_.wait_for(lock, kPause);
     } else {
       lock.unlock();
@@ -145,35 +147,59 @@ bool Mailbox::sendAll() {
   for (Letter& letter : posted) {
     any = true;
     guarded([&] {
-      if (letter.to == rank_) {
+      if (letter.other == rank_) {
         if (duties_.received) duties_.received(rank_, std::move(letter.bytes));
         return;
       }
-      underWay_.push_back({letter.to, inBlocks(std::move(letter.bytes))});
+      underWay_.push_back({letter.other, inBlocks(std::move(letter.bytes))});
       Letter& last = underWay_.back();
       // What cannot be sent has nobody to receive it.
-      if (mpi_.send(last.to, last.bytes.data(), last.bytes.size() / kMpiBlock, &last.request) < 0) underWay_.pop_back();
+      const int to = static_cast<int>(last.other);
+      if (mpi_.send(to, last.bytes.data(), last.bytes.size() / kMpiBlock, &last.request) < 0) underWay_.pop_back();
     });
   }
-  any |= std::erase_if(underWay_, [&](Letter& letter) { return mpi_.sent(&letter.request) != 0; }) != 0;
+  any |= std::erase_if(underWay_, [&](Letter& letter) { return mpi_.over(&letter.request) != 0; }) != 0;
   return any;
 }
 
-// Receives what has arrived. A message that finds no memory stays with MPI until the next look.
+// Begins to receive what has begun to arrive, and delivers what is there. A message that finds no memory stays with MPI
+// until the next look.
 bool Mailbox::receiveAll() {
   bool any = false;
   int from = 0;
   uint64_t blocks = 0;
   while (mpi_.arrived(&from, &blocks) == 1) {
-    bool taken = false;
+    bool begun = false;
     guarded([&] {
-      Bytes bytes(blocks * kMpiBlock);
-      if (mpi_.receive(from, bytes.data(), blocks) < 0) return;
-      taken = true;
-      duties_.received(static_cast<uint32_t>(from), fromBlocks(std::move(bytes)));
+      arriving_.push_back({static_cast<uint32_t>(from), Bytes(blocks * kMpiBlock)});
+      Letter& last = arriving_.back();
+      begun = mpi_.receive(from, last.bytes.data(), blocks, &last.request) >= 0;
+      if (!begun) arriving_.pop_back();
     });
-    if (!taken) break;
+    if (!begun) break;
     any = true;
+    if (duties_.heard) guarded([&] { duties_.heard(static_cast<uint32_t>(from)); });
+  }
+  return deliverAll() || any;
+}
+
+// Delivers what has arrived. A large message may be overtaken by one of another process, but by none of its sender.
+bool Mailbox::deliverAll() {
+  bool any = false;
+  for (size_t i = 0; i < arriving_.size();) {
+    const auto letter = arriving_.begin() + static_cast<std::ptrdiff_t>(i);
+    const bool first =
+        std::none_of(arriving_.begin(), letter, [&](const Letter& earlier) { return earlier.other == letter->other; });
+    const int over = first ? mpi_.over(&letter->request) : 0;
+    if (over == 0) {
+      ++i;
+      continue;
+    }
+    any = true;
+    Letter arrived = std::move(*letter);
+    arriving_.erase(letter);
+    // What cannot be received is lost with its sender.
+    if (over > 0) guarded([&] { duties_.received(arrived.other, fromBlocks(std::move(arrived.bytes))); });
   }
   return any;
 }

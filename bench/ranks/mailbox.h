@@ -23,11 +23,13 @@ class Mailbox {
  public:
   using Bytes = std::vector<unsigned char>;
   // All are called on the mailbox' thread. received: a message, also of this process to itself. tick: now and then.
-  // failed: one of these two has thrown, or there was no memory for a message. The mailbox goes on.
+  // failed: one of the others has thrown, or there was no memory for a message. The mailbox goes on. heard: a message
+  // of another process has begun to arrive, perhaps behind a large one that takes long.
   struct Duties {
     std::function<void(uint32_t from, Bytes message)> received;
     std::function<void()> tick;
     std::function<void(const std::exception& error)> failed;
+    std::function<void(uint32_t from)> heard = nullptr;
   };
 
   // Starts MPI. Throws RanksError where it cannot.
@@ -52,7 +54,7 @@ class Mailbox {
  private:
   enum class Ending { none, finish, abandon };
   struct Letter {
-    uint32_t to;
+    uint32_t other;  // to or from whom
     Bytes bytes;
     void* request = nullptr;
   };
@@ -61,6 +63,7 @@ class Mailbox {
   void work();
   bool sendAll();
   bool receiveAll();
+  bool deliverAll();
   template <class Step>
   void guarded(Step step);
   void end(Ending ending);
@@ -75,7 +78,7 @@ class Mailbox {
   std::deque<Letter> posted_;
   Ending ending_ = Ending::none;
   // Of the mailbox' thread.
-  std::deque<Letter> underWay_;
+  std::deque<Letter> underWay_, arriving_;
   std::thread thread_;
 };
 

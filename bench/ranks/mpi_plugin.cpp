@@ -40,7 +40,7 @@ int send(int to, const void* bytes, uint64_t blocks, void** request) {
   return 0;
 }
 
-int sent(void** request) {
+int over(void** request) {
   auto* const own = static_cast<MPI_Request*>(*request);
   int done = 0;
   const bool wrong = failed(MPI_Test(own, &done, MPI_STATUS_IGNORE));
@@ -61,9 +61,15 @@ int arrived(int* from, uint64_t* blocks) {
   return 1;
 }
 
-int receive(int from, void* bytes, uint64_t blocks) {
+int receive(int from, void* bytes, uint64_t blocks, void** request) {
   if (tooMany(blocks)) return -1;
-  return failed(MPI_Recv(bytes, static_cast<int>(blocks), block, from, kTag, world, MPI_STATUS_IGNORE)) ? -1 : 0;
+  auto* const own = new MPI_Request;
+  if (failed(MPI_Irecv(bytes, static_cast<int>(blocks), block, from, kTag, world, own))) {
+    delete own;
+    return -1;
+  }
+  *request = own;
+  return 0;
 }
 
 int finish() {
@@ -72,7 +78,7 @@ int finish() {
   return failed(MPI_Finalize()) ? -1 : 0;
 }
 
-constexpr MpiFunctions kFunctions{kMpiPluginVersion, start, send, sent, arrived, receive, finish};
+constexpr MpiFunctions kFunctions{kMpiPluginVersion, start, send, over, arrived, receive, finish};
 
 }  // namespace
 }  // namespace wavecrest

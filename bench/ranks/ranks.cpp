@@ -68,7 +68,8 @@ Ranks::Ranks(const Launch& launch) {
   lastTick_ = lastNews_ = Clock::now();
   mailbox_->open({.received = [this](uint32_t from, Mailbox::Bytes message) { received(from, std::move(message)); },
                   .tick = [this] { tick(); },
-                  .failed = [this](const std::exception& error) { failed(error); }});
+                  .failed = [this](const std::exception& error) { failed(error); },
+                  .heard = [this](uint32_t from) { silence_.at(from) = 0; }});
 }
 
 // Without finish the others are told to stop and to save: this process has failed. The mailbox' thread uses the
@@ -102,6 +103,13 @@ void Ranks::wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>
   while (!ready()) {
     if (!broken_.empty()) throw RanksError(broken_);
     if (lost_) throw RanksError(fmt::format("process {} of {} is lost", *lost_ + 1, count()));
+    if (stopping_ && hooks_.rescue) {
+      const auto rescue = std::exchange(hooks_.rescue, nullptr);
+      lock.unlock();
+      rescue();
+      lock.lock();
+      continue;
+    }
     changed_.wait_for(lock, std::chrono::milliseconds(50));
   }
 }
@@ -251,7 +259,8 @@ void Ranks::takeContribution(uint32_t from, SumLabel label, Mailbox::Bytes messa
 // Whoever waits for a sum or a message throws: it may be the one that was lost.
 void Ranks::failed(const std::exception& error) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  broken_ = fmt::format("films of processes do not add up: {}", error.what());
+  const bool film = dynamic_cast<const StateError*>(&error) != nullptr;
+  broken_ = film ? fmt::format("films of processes do not add up: {}", error.what()) : error.what();
   changed_.notify_all();
 }
 
@@ -289,7 +298,7 @@ void Ranks::complete(SumLabel label, std::vector<Mailbox::Bytes> messages) {
   changed_.notify_all();
 }
 
-// Sends heartbeats, passes on a signal that this process got, and finds processes that have been silent for too long.
+// Sends heartbeats, passes on signals that this process got, and finds processes that have been silent for too long.
 void Ranks::tick() {
   const Clock::time_point now = Clock::now();
   const double passed = std::min(secondsBetween(lastTick_, now), kLongestLook);
@@ -299,6 +308,7 @@ void Ranks::tick() {
     stopSaid_ = stopping_ = true;
     sendToOthers(Kind::stop, 0);
   }
+  if (hooks_.saveWanted && hooks_.saveWanted()) send(0, Kind::wantSave, 0);
   if (secondsBetween(lastNews_, now) >= kNews) {
     lastNews_ = now;
     if (first()) {

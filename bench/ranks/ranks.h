@@ -34,12 +34,15 @@ struct RankSum {
   nlohmann::ordered_json processes;  // ProcessRecord::toJson of each
 };
 
-// What the messages of other processes do to the render here. Called on another thread.
+// What the messages of other processes do to the render here. Called on another thread, but rescue.
 struct RankHooks {
   std::function<bool()> interrupted;  // whether a signal has asked this process to stop
+  std::function<bool()> saveWanted;   // whether one has asked it for a save since the last call
   std::function<void()> stop;         // another process has got one
   std::function<void()> attend;       // there is something to take: saves or sums
   std::function<uint64_t()> paths;    // so far, for progress
+  // All are to stop while this process waits for others. Called once, on the thread that waits.
+  std::function<void()> rescue;
 };
 
 class Ranks {
@@ -89,8 +92,8 @@ class Ranks {
   void takeContribution(uint32_t from, SumLabel label, Mailbox::Bytes message, bool lastStands);
   void complete(SumLabel label, std::vector<Mailbox::Bytes> messages);
   void callStop();
-  // Waits until ready() is true, with the mutex held, for as long as all processes live. Throws RanksError where one is
-  // lost, or a sum is broken.
+  // Waits until ready() is true, with the mutex held, for as long as all processes live. Calls the hook `rescue` once
+  // all are to stop. Throws RanksError where a process is lost, or a sum is broken.
   void wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& ready);
 
   std::unique_ptr<Mailbox> mailbox_;

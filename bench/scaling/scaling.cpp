@@ -18,7 +18,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr size_t kFewestRounds = 3, kMostRounds = 5;
+constexpr size_t kRounds = kVisitsForInterval;
 // Predictions are of renders of this length: at the end of a short one threads run out of tasks.
 constexpr double kPredictedSeconds = 1;
 constexpr size_t kMostScheduledTasks =
@@ -85,7 +85,7 @@ class RecordedRender {
 };
 
 // Measures what a part of this render is: its bytes, and the time to read it, to make its image, from which the error
-// is estimated, and to add it. All machines' parts are alike.
+// is estimated, and to add it. All machines' parts are alike; of mlt each has its share of the chains.
 std::vector<PartsScaling> partsScaling(const Session& session) {
   constexpr int kRepetitions = 3;
   const std::vector<unsigned char> state = savedBytes([&](StateWriter& out) { session.save(out); });
@@ -93,6 +93,8 @@ std::vector<PartsScaling> partsScaling(const Session& session) {
     StateReader in(state);
     return Film::fromState(in);
   };
+  const size_t film = savedBytes([&](StateWriter& out) { session.film().save(out); }).size();
+  const size_t shared = session.statistics().chains ? state.size() - film : 0;
   const std::unique_ptr<Film> sum = filmOf();
   std::vector<double> seconds;
   for (int i = 0; i < kRepetitions; ++i) {
@@ -104,8 +106,9 @@ std::vector<PartsScaling> partsScaling(const Session& session) {
   }
   std::vector<PartsScaling> rows;
   for (const uint32_t machines : powersOfTwo(2, kMostPredictedMachines)) {
-    rows.push_back(
-        {.machines = machines, .bytes = machines * state.size(), .mergeSeconds = machines * median(seconds)});
+    rows.push_back({.machines = machines,
+                    .bytes = machines * (state.size() - shared) + shared,
+                    .mergeSeconds = machines * median(seconds)});
   }
   return rows;
 }
@@ -145,14 +148,14 @@ ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& fi
   }
   // A recorded render for each number of threads that is predicted.
   const std::vector<uint32_t> predicted = powersOfTwo(2, kMostPredictedThreads);
-  const double recordedSlice = kRecordedPart * seconds / static_cast<double>(predicted.size() * (kMostRounds + 1));
+  const double recordedSlice = kRecordedPart * seconds / static_cast<double>(predicted.size() * (kRounds + 1));
   std::vector<RecordedRender> recorded;
   recorded.reserve(predicted.size());
   for (const uint32_t threads : predicted) recorded.emplace_back(scene, settings, threads, recordedSlice);
 
   // Each round measures a slice of every session and records a slice of every recorded render.
   MachineWatch watch;
-  const TurnPlan plan{.seconds = kMeasuredPart * seconds, .fewestRounds = kFewestRounds, .mostRounds = kMostRounds};
+  const TurnPlan plan{.seconds = kMeasuredPart * seconds, .fewestRounds = kRounds, .mostRounds = kRounds};
   const std::vector<std::vector<Slice>> slices = renderInTurn(sessions, plan, [&] {
     for (RecordedRender& render : recorded) render.record();
     watch.look();

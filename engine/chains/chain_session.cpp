@@ -307,6 +307,7 @@ RenderStatistics ChainSession<S>::statistics() const {
   // Add the statistics that only chains have.
   ChainStatistics& chains = out.chains.emplace();
   chains.mutations = mutations();
+  chains.directPass = direct();
   chains.directPaths = film_.allSamples();  // which are those of the direct pass alone
   chains.epochs = epochs_.count();
   const Brightness ofFilm = epochs_.ofFilm();

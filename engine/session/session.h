@@ -34,7 +34,8 @@ constexpr size_t kListedStuckChains = 16;
 // What Markov chains have done so far.
 struct ChainStatistics {
   uint64_t mutations = 0;    // of all chains, rejected ones included
-  uint64_t directPaths = 0;  // of the separate pass for direct light
+  bool directPass = false;   // direct light is rendered apart,
+  uint64_t directPaths = 0;  // by so many paths
   uint64_t epochs = 0;
   double brightness = 0, brightnessError = 0;  // b, the mean luminance of what chains render, and its standard error
   // b from the bootstraps and all large steps together; too small where chains are bound to lengths and b is uncertain

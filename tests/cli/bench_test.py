@@ -126,6 +126,13 @@ class Scaling(CommandTest):
                 self.assertGreater(predicted["speedup"], 0, row["method"])
                 self.assertGreater(predicted["parallelism"], 1, row["method"])
 
+    def test_parts_of_mlt_share_the_chains(self):
+        self.run_wavecrest("bench", "cornell-diffuse", "--scaling", "--methods", "mlt", "--size", "24x16", "--threads", "1",
+                           "--duration", "0.2s", "--json", self.path("scaling.json"))
+        row, = read_json(self.path("scaling.json"))["results"]
+        first, last = row["parts"][0], row["parts"][-1]
+        self.assertLess(last["snapshot_bytes"], last["machines"] // first["machines"] * first["snapshot_bytes"])
+
 
 class Tradeoff(CommandTest):
     def test_every_setting_has_its_figures_or_its_refusal(self):

@@ -6,9 +6,11 @@ a second later, SIGKILL; where that is tested they get longer, as it has to hold
 
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
+import time
 import unittest
 
 from harness import (
@@ -47,13 +49,14 @@ class MpiTest(ShareTest):
         return result
 
     def start_mpirun(self, processes, *arguments, launcher=PATIENCE):
-        """mpirun, and the numbers of its processes in the order of their ranks."""
+        """mpirun, and the numbers of its processes in the order of their ranks. Behind each ":" is one more process."""
         mpirun = subprocess.Popen(
             list(map(str, self.command(processes, *arguments, launcher=launcher))), cwd=self.folder, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE, text=True, env=os.environ | ALLOWED,
         )  # fmt: skip
         self.addCleanup(mpirun.kill)
         ranks = {}
+        count = processes + arguments.count(":")
 
         def find():
             ranks.clear()
@@ -68,11 +71,21 @@ class MpiTest(ShareTest):
                     continue
                 if "OMPI_COMM_WORLD_RANK" in variables:
                     ranks[int(variables["OMPI_COMM_WORLD_RANK"])] = int(process.name)
-            return len(ranks) == processes
+            return len(ranks) == count
 
         self.wait_for(lambda: find() or mpirun.poll() is not None)
         self.assertIsNone(mpirun.poll(), "mpirun has ended")
-        return mpirun, [ranks[rank] for rank in range(processes)]
+        return mpirun, [ranks[rank] for rank in range(count)]
+
+    def start_with_one_done(self, done):
+        """Two processes, of which one is done and waits for the other, which renders on."""
+        first, second = (
+            self.arguments("pt", *ENDLESS, *(["--time", "0.5s"] if rank == done else []), "--snapshot-every", "100ms",
+                           "-o", f"done{done}.exr") for rank in (0, 1)
+        )  # fmt: skip
+        mpirun, ranks = self.start_mpirun(1, *first, ":", "-n", 1, WAVECREST, *second)
+        self.wait_for_file(f"done{done}.0009.exr")  # of one second
+        return mpirun, ranks
 
     def wait_for_file(self, name):
         self.wait_for(lambda: (self.folder / name).exists())
@@ -163,6 +176,16 @@ class Sums(MpiTest):
             self.assertGreater(int(last["wavecrest:camera_paths"]), done["camera_paths"])
 
 
+    def test_that_each_process_learns_by_itself_is_said_where_one_learns(self):
+        arguments = ["render", "cornell-diffuse", "--size", "64x48", "--threads", "1", "-m", "gpt", "--spp", "4"]
+        for guide, learns in (("auto", False), ("radiance", True)):  # trials find the guide worth nothing there
+            self.mpirun(2, *arguments, "--guide", guide, "-o", "a.pfm", "--stats", "stats.json")
+            stats = read_json(self.path("stats.json"))
+            if guide == "auto":
+                self.assertEqual(stats["choice"]["method"], "pt")
+            self.assertEqual(any("learns from its own share" in note for note in stats["notes"]), learns, guide)
+
+
 class Threads(MpiTest):
     def test_threads_follow_from_the_launcher(self):
         cores = len(os.sched_getaffinity(0))
@@ -175,6 +198,33 @@ class Threads(MpiTest):
         self.mpirun(2, *arguments, launcher=["--bind-to", "hwthread"])
         threads = [process["threads"] for process in read_json(self.path("stats.json"))["process_list"]]
         self.assertEqual(threads, [1, 1])
+
+
+    def test_each_process_binds_its_threads_to_cores_of_its_own(self):
+        if len(os.sched_getaffinity(0)) < 2:
+            self.skipTest("one core")
+        if "warning: --pin: " in self.render("--spp", "1", "--pin", "-o", "plain.pfm").stderr:
+            self.skipTest("a container that forbids it")
+        arguments = self.arguments("pt", *ENDLESS, "--pin", "--snapshot-every", "100ms", "-o", "a.exr")
+        mpirun, ranks = self.start_mpirun(2, *arguments, launcher=[*PATIENCE, "--bind-to", "none"])
+        self.wait_for_file("a.0001.exr")
+        bound = [set(), set()]
+
+        def find():
+            for cpus, process in zip(bound, ranks):
+                for status in pathlib.Path(f"/proc/{process}/task").glob("*/status"):
+                    try:
+                        allowed = re.search(r"^Cpus_allowed_list:\s*(\S+)$", status.read_text(), re.MULTILINE)[1]
+                    except OSError:
+                        continue
+                    if allowed.isdigit():
+                        cpus.add(int(allowed))
+            return all(bound)
+
+        self.wait_for(find)
+        mpirun.terminate()
+        mpirun.communicate(timeout=TIMEOUT_SECONDS)
+        self.assertEqual(bound[0] & bound[1], set())
 
 
 class Signals(MpiTest):
@@ -211,9 +261,12 @@ class Signals(MpiTest):
             self.run_wavecrest(*self.arguments(method, "--spp", spp, "-o", "whole.pfm"))
             more = ["--spp", spp, "--checkpoint", method, "--resume", "-o", f"{method}.pfm", "--stats", "joint.json"]
             self.mpirun(2, *self.arguments(method, *more, "--time", "20ms"))
-            self.assertLess(read_json(self.path("joint.json"))["iterations"], spp)
+            first = read_json(self.path("joint.json"))
+            self.assertLess(first["iterations"], spp)
             self.mpirun(2, *self.arguments(method, *more))
-            self.assertEqual(read_json(self.path("joint.json"))["iterations"], spp)
+            joint = read_json(self.path("joint.json"))
+            self.assertEqual(joint["iterations"], spp)
+            self.assertGreater(joint["resumed_from"], 0.75 * first["iterations"])
             self.assert_equal_but_for_rounding(self.image(f"{method}.pfm"), self.image("whole.pfm"), method)
             # Of another number of processes.
             result = self.mpirun(3, *self.arguments(method, *more), expect=INPUT)
@@ -251,6 +304,22 @@ class Signals(MpiTest):
         self.assertIn(f"wavecrest: error: {line}", self.said(error))
         self.assertFalse((self.folder / "image.exr").exists())
 
+    def test_a_process_that_is_done_saves_its_share_while_it_waits(self):
+        for done in (0, 1):
+            mpirun, ranks = self.start_with_one_done(done)
+            os.kill(ranks[1 - done], signal.SIGSTOP)
+            try:
+                begin = time.monotonic()
+                os.kill(ranks[done], signal.SIGTERM)
+                self.wait_for_file(f"done{done}.part-{done + 1}-of-2")
+                # Not only once the other is lost, after ten seconds of silence.
+                self.assertLess(time.monotonic() - begin, 8)
+            finally:
+                os.kill(ranks[1 - done], signal.SIGKILL)
+            mpirun.communicate(timeout=TIMEOUT_SECONDS)
+            self.run_wavecrest("merge", f"done{done}.part-{done + 1}-of-2", "-o", "rest.pfm")
+            self.assertFalse((self.folder / f"done{done}.exr").exists())
+
     def test_shares_that_an_earlier_render_left_stay(self):
         self.write("image.part-1-of-2", "a share")
         for more in ([], ["--dry-run"]):
@@ -274,6 +343,17 @@ class Signals(MpiTest):
         self.run_wavecrest("merge", "c-1-of-2", "c-2-of-2", "-o", "merged.pfm")
 
 
+    def test_a_process_that_is_done_hears_a_request_to_save(self):
+        for done in (0, 1):
+            mpirun, ranks = self.start_with_one_done(done)
+            self.assertFalse((self.folder / f"done{done}.exr").exists())
+            os.kill(ranks[done], signal.SIGUSR1)
+            self.wait_for_file(f"done{done}.exr")
+            self.assertEqual(read_exr_header(self.path(f"done{done}.exr"))["wavecrest:processes"], "2")
+            mpirun.terminate()
+            mpirun.communicate(timeout=TIMEOUT_SECONDS)
+
+
 class Refused(MpiTest):
     def test_what_several_processes_cannot_do(self):
         for more, said in (
@@ -293,6 +373,12 @@ class Refused(MpiTest):
             result = self.mpirun(2, *command, expect=USAGE)
             self.assert_one_error(result, f"{command[0]}: mpirun has started 2 processes")
         self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_processes_that_render_with_other_bits(self):
+        arguments = self.arguments("pt", "--spp", "2", "-o", "a.pfm")
+        result = self.mpirun(1, *arguments, ":", "-n", 1, WAVECREST, *arguments, "--isa", "scalar", expect=INPUT)
+        said = "process 2 of 2: its isa is scalar, not .*; expected the same program and settings in all processes"
+        self.assert_one_error(result, said)
 
     def test_an_error_is_said_once(self):
         self.assert_one_error(self.mpirun(3, "render", "nowhere.xml", expect=INPUT), "nowhere.xml")

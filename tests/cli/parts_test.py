@@ -110,6 +110,10 @@ class Sums(PartsTest):
         files = self.all_parts("mlt", name="chains", spp=1)
         result = self.merge(*files[:3], "-o", "merged.pfm", expect=INPUT)
         self.assertIn("no whole pass over the film: no image was written", result.stderr.splitlines()[-1])
+        # The first parts alone have samples of the direct pass: one of each pixel to two mutations.
+        few = self.all_parts("mlt", name="few", parts=8, spp=4)
+        result = self.merge(*few[3:], "-o", "merged.pfm", expect=INPUT)
+        self.assertIn("no whole pass over the film: no image was written", result.stderr.splitlines()[-1])
         self.assertFalse((self.folder / "merged.pfm").exists())
         self.merge(*files, "-o", "merged.pfm")
 
