@@ -166,7 +166,6 @@ void RenderRun::load() {
   settings_ = ranks_.share(settingsOfRender(options_, scene_), scene_, kind_);
   settings_.measureStages = measures;
   if (earlier_) earlier_->cutAlike(settings_);
-  if (options_.pin) settings_.placement = ranks_.pinned(settings_.threads, kind_);
   if (options_.until.any()) {
     const FilmArea film = filmOutline(scene_.film);
     until_.emplace(untilGoal(options_, settings_, film));
@@ -206,6 +205,7 @@ int RenderRun::runTogether() {
   ranks_.together([this] { check(); });
   ranks_.together([this] { load(); });
   ranks_.cutAlike(settings_);
+  if (options_.pin) settings_.placement = ranks_.pinned(settings_.threads, kind_);
   if (options_.dryRun) {
     ranks_.together([this] {
       const DryPlan plan = withinMemory([&] { return planWithoutSession(scene_, settings_); });

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bench/checkpoint/checkpoint.h"
+#include "bench/machine/placement.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/messages.h"
@@ -121,19 +122,26 @@ RenderSettings RenderRanks::share(const RenderSettings& settings, const Scene& s
 
 Placement RenderRanks::pinned(uint32_t threads, ProgressKind kind) const {
   if (!several()) return pinnedPlacement(threads, kind);
-  const auto own = places_.begin() + ranks_->rank();
-  const auto before = std::count(places_.begin(), own, *own), all = std::count(places_.begin(), places_.end(), *own);
-  Placement placement = pinnedPlacement(static_cast<uint32_t>(all) * threads, kind);
-  if (placement.cpus.empty()) return placement;
-  const auto first = placement.cpus.begin() + before * threads;
-  placement.cpus = std::vector<uint32_t>(first, first + threads);
-  return placement;
+  // Threads of all processes here, and of those before this one: each process may have another number.
+  uint32_t before = 0, all = 0;
+  for (uint32_t rank = 0; rank < ranks_->count(); ++rank) {
+    if (places_[rank] != places_[ranks_->rank()]) continue;
+    if (rank < ranks_->rank()) before += threadsOfAll_[rank];
+    all += threadsOfAll_[rank];
+  }
+  const Placement placement = pinnedPlacement(all, kind);
+  return placement.cpus.empty() ? placement : partOf(placement, usableHardwareThreads(), before, threads);
 }
 
 void RenderRanks::cutAlike(RenderSettings& settings) {
   if (!several()) return;
-  const std::vector<std::string> cuts = ranks_->exchange(std::to_string(settings.cutForThreads()));
-  settings.piecesForThreads = static_cast<uint32_t>(std::stoul(cuts.front()));
+  const std::vector<std::string> all =
+      ranks_->exchange(fmt::format("{} {}", settings.cutForThreads(), settings.threads));
+  settings.piecesForThreads = static_cast<uint32_t>(std::stoul(all.front()));
+  threadsOfAll_.clear();
+  for (const std::string& one : all) {
+    threadsOfAll_.push_back(static_cast<uint32_t>(std::stoul(one.substr(one.find(' ')))));
+  }
 }
 
 void RenderRanks::together(const std::function<void()>& step) {

@@ -37,10 +37,11 @@ class RenderRanks {
   void adapt(RenderOptions& options);
   // The settings of this process' share.
   RenderSettings share(const RenderSettings& settings, const Scene& scene, ProgressKind kind) const;
-  // The placement of this process' threads: those of processes that may run on the same processors lie beside them.
-  Placement pinned(uint32_t threads, ProgressKind kind) const;
-  // Has all processes cut paths as the first one does: last bits may depend on it.
+  // Has all processes cut paths as the first one does: last bits may depend on it. They learn each other's threads.
   void cutAlike(RenderSettings& settings);
+  // The placement of this process' threads: those of processes that may run on the same processors lie beside them.
+  // After cutAlike.
+  Placement pinned(uint32_t threads, ProgressKind kind) const;
   // Runs a step that every process runs. Where it fails in one, the first says so, and all throw SharedFailure.
   void together(const std::function<void()>& step);
   // Requires that all render the same, and returns the number of the first snapshot for all. The first process' outputs
@@ -83,7 +84,8 @@ class RenderRanks {
   std::string fileOfShare(const std::string& file) const;
 
   std::optional<Ranks> ranks_;
-  std::vector<std::string> places_;  // of all processes (placeOfThisProcess)
+  std::vector<std::string> places_;     // of all processes (placeOfThisProcess)
+  std::vector<uint32_t> threadsOfAll_;  // from cutAlike on
   std::string emergencyFile_;
   std::optional<bool> shareSaved_;  // once this process has tried: whether it is in emergencyFile_
   uint32_t threads_ = 0;

@@ -137,7 +137,12 @@ void resumeCampaign(CampaignOptions& options, const std::filesystem::path& resul
     if (known != begun.end() && known->second == words) continue;
     const std::optional<CampaignOptions> larger = extended(all, name, words);
     if (!larger) {
-      const std::string was = known == begun.end() ? "the default" : fmt::format("{}", fmt::join(known->second, " "));
+      // A time and a factor take each other's place.
+      const std::string other = name == "--time" ? "--time-factor" : name == "--time-factor" ? "--time" : "";
+      const auto instead = begun.find(other);
+      const std::string was = known != begun.end()     ? fmt::format("{}", fmt::join(known->second, " "))
+                              : instead != begun.end() ? fmt::format("{} {}", other, fmt::join(instead->second, " "))
+                                                       : "the default";
       throw UsageError(fmt::format("{} {}: {} was begun with {}; expected the same, more, or another --out", name,
                                    fmt::join(words, " "), results.string(), was));
     }

@@ -103,7 +103,13 @@ class SnapshotTaker {
       if (!isThere) snapshot.file.clear();
       run_.snapshots.push_back(std::move(snapshot));
     }
-    if (run_.snapshots.size() == earlier.snapshots.size()) paths_ = earlier.paths;
+    if (run_.snapshots.size() == earlier.snapshots.size()) {
+      paths_ = earlier.paths;
+      return;
+    }
+    // The end of a shorter run may have been the image of a snapshot that was due before it.
+    const unsigned taken = run_.snapshots.empty() ? leftOut_ : run_.snapshots.back().number + 1;
+    if (taken < next) take(next - 1);
   }
 
   void takeAndSave(unsigned number) {

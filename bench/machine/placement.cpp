@@ -80,6 +80,19 @@ PlacementPlan placeThreads(std::vector<HardwareThread> usable, uint32_t threads)
   return {std::move(placement), {}};
 }
 
+Placement partOf(const Placement& whole, const std::vector<HardwareThread>& usable, size_t first, size_t count) {
+  Placement part;
+  for (size_t i = first; i < first + count; ++i) {
+    part.cpus.push_back(whole.cpus.at(i));
+    const auto found = std::find_if(usable.begin(), usable.end(),
+                                    [&](const HardwareThread& each) { return each.cpu == part.cpus.back(); });
+    if (found != usable.end()) part.nodes.push_back(found->node);
+  }
+  std::sort(part.nodes.begin(), part.nodes.end());
+  part.nodes.erase(std::unique(part.nodes.begin(), part.nodes.end()), part.nodes.end());
+  return part;
+}
+
 PlacementPlan placeOnThisMachine(uint32_t threads) {
   PlacementPlan plan = placeThreads(usableHardwareThreads(), threads);
   if (plan.placement.cpus.empty()) return plan;

@@ -5,6 +5,7 @@
 // that bandwidth is used evenly. Only hardware threads that the affinity mask and the control group allow are used.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -29,6 +30,9 @@ struct PlacementPlan {
   std::string refusal;
 };
 PlacementPlan placeThreads(std::vector<HardwareThread> usable, uint32_t threads);
+
+// The threads first, first + 1, ... of a placement on these hardware threads, with the nodes of their own.
+Placement partOf(const Placement& whole, const std::vector<HardwareThread>& usable, size_t first, size_t count);
 
 // On this machine; refuses also where the system forbids to bind threads.
 PlacementPlan placeOnThisMachine(uint32_t threads);

@@ -113,7 +113,11 @@ void Mailbox::work() {
     }
     if (ending_ == Ending::abandon) {
       if (giveUp == Clock::time_point::max()) giveUp = Clock::now() + kLastMoment;
-      if (underWay_.empty() || Clock::now() > giveUp) return;
+      if (underWay_.empty() || Clock::now() > giveUp) {
+        lock.unlock();
+        leaveToMpi();
+        return;
+      }
     }
     if (sent || received) continue;
     if (idle) {
@@ -181,6 +185,16 @@ bool Mailbox::receiveAll() {
     if (duties_.heard) guarded([&] { duties_.heard(static_cast<uint32_t>(from)); });
   }
   return deliverAll() || any;
+}
+
+// MPI has not ended and may still use the bytes of letters under way: they stay as long as the process.
+void Mailbox::leaveToMpi() {
+  static std::mutex mutex;
+  static auto* const kept = new std::vector<std::deque<Letter>>;
+  const std::lock_guard<std::mutex> lock(mutex);
+  for (std::deque<Letter>* letters : {&underWay_, &arriving_}) {
+    if (!letters->empty()) kept->push_back(std::move(*letters));
+  }
 }
 
 // Delivers what has arrived. A large message may be overtaken by one of another process, but by none of its sender.

@@ -64,6 +64,7 @@ class Mailbox {
   bool sendAll();
   bool receiveAll();
   bool deliverAll();
+  void leaveToMpi();
   template <class Step>
   void guarded(Step step);
   void end(Ending ending);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "engine/state/state_stream.h"
@@ -260,7 +262,11 @@ void Ranks::takeContribution(uint32_t from, SumLabel label, Mailbox::Bytes messa
 void Ranks::failed(const std::exception& error) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const bool film = dynamic_cast<const StateError*>(&error) != nullptr;
-  broken_ = film ? fmt::format("films of processes do not add up: {}", error.what()) : error.what();
+  const bool memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+                      dynamic_cast<const std::length_error*>(&error) != nullptr;
+  broken_ = film     ? fmt::format("films of processes do not add up: {}", error.what())
+            : memory ? "out of memory for the sums of processes; expected a smaller film or fewer processes"
+                     : error.what();
   changed_.notify_all();
 }
 

@@ -17,12 +17,14 @@ struct KnownIntegrator {
 constexpr KnownIntegrator kIntegrators[] = {{"path", "pt"},
                                             {"direct", "pt", 2},
                                             {"direct_projective", "pt", 2},
+                                            {"direct_reparam", "pt", 2},
                                             {"volpath", "pt"},
                                             {"volpathmis", "pt"},
                                             {"volpath_simple", "pt"},
                                             {"prb", "pt", 6},
                                             {"prb_basic", "pt", 6},
                                             {"prb_projective", "pt", 6},
+                                            {"prb_reparam", "pt", 6},
                                             {"prbvolpath", "pt", 6},
                                             {"vpl", "pt", 5},
                                             {"ptracer", "lt"},
@@ -43,8 +45,8 @@ constexpr std::string_view kSamplingParameters[] = {
     "samples_per_pass", "block_size", "timeout", "granularity", "work_units", "emitter_samples", "bsdf_samples",
     "shading_samples", "direct_samples", "sample_direct", "light_image", "brute_force", "use_spectral_mis",
     // Of the projective ones, and of those that reparameterise.
-    "sppc", "sppp", "sppi", "guiding", "guiding_proj", "guiding_rounds", "reparam", "reparam_max_depth", "reparam_rays",
-    "reparam_kappa", "reparam_exp", "reparam_antithetic", "reparam_unroll",
+    "sppc", "sppp", "sppi", "guiding", "guiding_proj", "guiding_rounds", "project_seed", "reparam_max_depth",
+    "reparam_rays", "reparam_kappa", "reparam_exp", "reparam_antithetic", "reparam_unroll",
     // Of photons and of vpl.
     "photon_count", "initial_radius", "alpha", "max_passes", "global_photons", "caustic_photons", "volume_photons",
     "global_lookup_radius", "caustic_lookup_radius", "volume_lookup_radius", "lookup_size", "glossy_samples",
@@ -100,8 +102,8 @@ void readIntegrator(LoadContext& context, const XmlElement& element) {
   constexpr int64_t kMost = 1'000'000'000;
   const std::string_view type = element.get("type");
   const int64_t fallback = integratorOf(type).maxDepth;
-  // direct_projective has two edges, whatever it states.
-  const bool isFixed = type == "direct_projective";
+  // These have two edges, whatever they state.
+  const bool isFixed = type == "direct_projective" || type == "direct_reparam";
   if (isFixed) parameters.leaveOut({"max_depth"}, "left out: paths of this integrator have two edges");
   defaults.maxDepth = static_cast<int>(isFixed ? fallback : parameters.integer("max_depth", fallback, -1, kMost));
   if (defaults.maxDepth == 0) {

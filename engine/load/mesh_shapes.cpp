@@ -36,9 +36,13 @@ void checkLegacyObj(LoadContext& context, Parameters& parameters, const Triangle
                         "shape_index");
   }
   if (!parameters.boolean("load_materials", true) || !soup.usesLibrary || !parameters.objects("bsdf").empty()) return;
+  // The medium of a null boundary has a warning of its own; that of a light is left to finish().
+  const bool isLight = !parameters.objects("emitter").empty();
+  const bool isNull = !isLight && !parameters.objects("medium").empty();
   context.note(parameters.locationOf("filename"), "materials of an OBJ file (mtllib, usemtl)",
-               parameters.objects("emitter").empty() ? "left out: a shape without a bsdf is diffuse of reflectance 0.5"
-                                                     : "left out: a light without a bsdf is black");
+               isLight  ? "left out: a light without a bsdf is black"
+               : isNull ? "left out: a shape with a medium and without a bsdf is null"
+                        : "left out: a shape without a bsdf is diffuse of reflectance 0.5");
 }
 
 // A mesh from a file that has only this mesh, without attributes. The file may have been read ahead.

@@ -61,7 +61,8 @@ class ObjReader {
  private:
   // Corners that follow get vertices of their own, over which normals are smoothed.
   void beginMesh() {
-    if (separateMeshes_) vertices_.clear();
+    // Not clear(), which takes as long as the largest mesh so far.
+    if (separateMeshes_ && !vertices_.empty()) vertices_ = {};
   }
 
   // The next N numbers of the line.

@@ -309,6 +309,8 @@ class Extending(Converge):
         self.converge(*quick, "--time-factor", "0.02")
         self.converge("--out", "a", "--resume", "--time-factor", "0.01", expect=USAGE)
         self.converge("--out", "a", "--resume", "--time-factor", "0.05")
+        result = self.converge("--out", "a", "--resume", "--time", "0.1s", expect=USAGE)
+        self.assertIn("was begun with --time-factor 0.05; expected", result.stderr)
         database = sqlite3.connect(self.results("a"))
         ((end,),) = database.execute("SELECT MAX(render_seconds) FROM snapshot")
         ((time,),) = database.execute("SELECT value FROM campaign WHERE key = 'time'")

@@ -62,6 +62,15 @@ TEST(Placement, moreThreadsAreSharedEvenlyAmongSockets) {
   EXPECT_EQ(placement.nodes, (std::vector<uint32_t>{0, 1}));
 }
 
+TEST(Placement, aPartHasTheNodesOfItsThreads) {
+  const auto usable = syntheticHardwareThreads(kTwoSockets);
+  const Placement whole = placeThreads(usable, 112).placement;
+  const Placement first = partOf(whole, usable, 0, 1), rest = partOf(whole, usable, 1, 111);
+  EXPECT_EQ(first.nodes, (std::vector<uint32_t>{0}));
+  EXPECT_EQ(rest.nodes, (std::vector<uint32_t>{0, 1}));
+  EXPECT_EQ(std::count(rest.cpus.begin(), rest.cpus.end(), first.cpus.front()), 0);
+}
+
 TEST(Placement, coresAreSharedOnlyWhereThereAreTooFew) {
   const auto usable = syntheticHardwareThreads(kTwoSockets);
   EXPECT_EQ(most(loadOf(usable, placeThreads(usable, 112).placement).cores), 1u);
