@@ -237,8 +237,9 @@ TEST(Integrator, DepthDefaultsToThatOfItsType) {
   const auto depthOf = [](const std::string& type) {
     return loadBody("<integrator type=\"" + type + "\"/>").defaults.maxDepth;
   };
-  for (const char* type : {"prb", "prb_basic", "prb_projective", "prb_reparam", "prbvolpath"})
+  for (const char* type : {"prb", "prb_basic", "prb_projective", "prb_reparam", "prbvolpath"}) {
     EXPECT_EQ(depthOf(type), 6) << type;
+  }
   EXPECT_EQ(depthOf("direct_projective"), 2);
   EXPECT_EQ(depthOf("direct_reparam"), 2);
   const Scene stated =
