@@ -113,7 +113,9 @@ void readFilm(LoadContext& context, const XmlElement* element) {
     const auto rounded = [](double side) { return static_cast<uint32_t>(std::max(side + 0.5, 1.0)); };
     film.width = width != 0 ? width : rounded(height * aspect);
     film.height = height != 0 ? height : rounded(width / aspect);
-    if (film.isCropped()) context.note(element->location(), "crop window", "left out beside a size from outside");
+    if (element && film.isCropped()) {
+      context.note(element->location(), "crop window", "left out beside a size from outside");
+    }
     film.cropX = film.cropY = film.cropWidth = film.cropHeight = 0;
   }
   // Check the final size.
