@@ -16,8 +16,7 @@ constexpr double kScalingSeconds = 20;
 
 int runBenchScaling(const BenchOptions& options) {
   const double seconds = benchSeconds(options, kScalingSeconds);
-  // Processes write into such folders. What is wrong with them is said before anything is measured.
-  { const ScratchFolder probe; }
+  requireScratchFolders();
   nlohmann::ordered_json all = {{"results", nlohmann::ordered_json::array()}};
   forEachBenchCase(options, parseMethodList(options.methods), [&](const BenchCase& one) {
     const ScalingResult result = measureScaling(one.scene, one.file, one.settings, seconds);

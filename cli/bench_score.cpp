@@ -104,8 +104,7 @@ int runBenchScore(const BenchOptions& options) {
                              .threads = threads,
                              .sceneFile = findScene,
                              .references = sceneFolder() / "references"};
-  // Processes write into such folders. What is wrong with them is said before anything is measured.
-  { const ScratchFolder probe; }
+  requireScratchFolders();
   printBench(options, scoreHeading(request));
   // Measures. Each row is printed once it is measured.
   ExpectedImages expected = ExpectedImages::committed();

@@ -32,6 +32,9 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
+// Throws where no scratch folder can be made: called before anything is measured with processes that write into one.
+inline void requireScratchFolders() { const ScratchFolder probe; }
+
 // What a render is asked for, in options that every version of wavecrest has. Variables such as WAVECREST_SAMPLER are
 // not passed on to it.
 struct ChildRequest {

@@ -80,8 +80,8 @@ std::string machineOf(const Json& result) {
   }
 }
 
-// The smallest probability that the rank-sum test gives to so many values: all of one side are above those of the
-// other.
+// The smallest p-value of the two-sided rank-sum test on so many values: where all values of one side are above all
+// of the other.
 double leastProbability(size_t a, size_t b) {
   double choices = 1;  // of the ranks of one side
   for (size_t i = 1; i <= a; ++i) choices *= static_cast<double>(b + i) / static_cast<double>(i);

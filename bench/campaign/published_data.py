@@ -1,7 +1,9 @@
 """What a results file has, and what is committed of it: campaign.json and measurements.csv."""
 
 import collections
+import contextlib
 import csv
+import functools
 import itertools
 import json
 import os
@@ -34,34 +36,39 @@ def per_scene(value):
 class Results:
     """The results file of a campaign, of all scenes or of these."""
 
-    def __init__(self, folder, scenes=None):
-        database = sqlite3.connect(folder / "results.sqlite")
-
-        def rows(query):
-            """Those whose first column is one of the scenes."""
-            return [row for row in database.execute(query) if scenes is None or row[0] in scenes]
-
-        self.settings = dict(database.execute("SELECT key, value FROM campaign"))
-        folder, given = self.settings.pop("reference_folder", None), ROOT / "scenes" / "references"
+    def __init__(self, folder, only=None):
+        self.folder, self.only = folder, only
+        self.settings = dict(self.select("SELECT key, value FROM campaign", of_scenes=False))
+        reference_folder, given = self.settings.pop("reference_folder", None), ROOT / "scenes" / "references"
         # of this machine, and not of the repository
-        self.own_references = folder is not None and not pathlib.Path(folder).resolve().is_relative_to(given.resolve())
-        done = rows("SELECT scene, method, seed, stats FROM run WHERE state = 'done'")
+        self.own_references = False
+        if reference_folder is not None:
+            self.own_references = not pathlib.Path(reference_folder).resolve().is_relative_to(given.resolve())
+        done = self.select("SELECT scene, method, seed, stats FROM run WHERE state = 'done'")
         self.runs = [(*run, json.loads(stats)) for *run, stats in done]
         # stats where the run had no time for a whole image
-        self.refused = rows("SELECT scene, method, seed, reason, stats FROM run WHERE state = 'refused'")
-        # As in the report's measurements.csv.
+        self.refused = self.select("SELECT scene, method, seed, reason, stats FROM run WHERE state = 'refused'")
+        self.floors = {}
+        for scene, metric, value in self.select("SELECT scene, metric, value FROM noise_floor"):
+            self.floors.setdefault(scene, {})[metric] = value
+        self.hashes = dict(self.select("SELECT name, scene_hash FROM scene"))
+        self.biases = self.select("SELECT * FROM bias ORDER BY scene, method, number")
+
+    def select(self, query, of_scenes=True):
+        """Rows; of_scenes: those whose first column is one of the scenes."""
+        with contextlib.closing(sqlite3.connect(self.folder / "results.sqlite")) as database:
+            rows = database.execute(query).fetchall()
+        return [row for row in rows if not of_scenes or self.only is None or row[0] in self.only]
+
+    @functools.cached_property
+    def measurements(self):
+        """As in the report's measurements.csv."""
         names = ("scene", "method", "seed", "snapshot", "seconds", "iterations", "metric", "value")
-        measured = rows(
+        measured = self.select(
             "SELECT scene, method, seed, s.number, render_seconds, iterations, metric, value FROM run JOIN snapshot s ON s.run = id"
             " JOIN measurement m ON m.run = id AND m.number = s.number ORDER BY id, s.number, metric"
         )
-        self.measurements = [dict(zip(names, ("" if field is None else str(field) for field in row))) for row in measured]
-        self.floors = {}
-        for scene, metric, value in rows("SELECT scene, metric, value FROM noise_floor"):
-            self.floors.setdefault(scene, {})[metric] = value
-        self.hashes = dict(rows("SELECT name, scene_hash FROM scene"))
-        self.biases = rows("SELECT * FROM bias ORDER BY scene, method, number")
-        database.close()
+        return [dict(zip(names, ("" if field is None else str(field) for field in row))) for row in measured]
 
     def ahead(self):
         """The (scene, method) that lack a seed and are not refused, of the scenes begun and of those asked for."""

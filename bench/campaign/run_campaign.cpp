@@ -15,6 +15,7 @@
 #include "bench/campaign/pace.h"
 #include "bench/campaign/run_settings.h"
 #include "bench/campaign/scene_reference.h"
+#include "bench/results/noise_floors.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
 #include "bench/results/within_folder.h"
@@ -201,8 +202,7 @@ class Campaign {
     }
     const bool measured = std::ranges::any_of(
         results.runs, [&](const RunRecord& run) { return run.scene == entry.name && !run.snapshots.empty(); });
-    const auto text = [](const MetricValues& floors) { return nlohmann::json(floors).dump(); };  // the same for NaN
-    if (known != nullptr && measured && text(known->noiseFloors) != text(found.noiseFloors)) {
+    if (known != nullptr && measured && !sameFloors(known->noiseFloors, found.noiseFloors)) {
       throw ResultsFileError(fmt::format(
           "{}: has other noise floors than the reference that runs of {} were measured against; expected that "
           "one in its place, or another --out",

@@ -86,7 +86,8 @@ void WatchedSession::addSlice(uint64_t iterations) {
 void WatchedSession::estimateError() {
   if (!slices_ || errorIterations_ == slicesUntil_) return;
   const std::optional<FilmError> now = estimateFilmError(slices_->slices(), BlockSample::kWidth);
-  // Where slices are too uneven to tell, the last estimate stays. Without variance few iterations do not tell either.
+  // Where slices are too uneven to tell, the last estimate stays. A film without variance is not taken for one without
+  // error before it has many iterations: rare light may not have arrived yet.
   if (!now || (now->value <= kNoVariance && slicesUntil_ < kBlackIterations)) return;
   error_ = now;
   errorIterations_ = slicesUntil_;

@@ -22,7 +22,7 @@ class Wavecrest:
         own = ["--merge-vertices", "all"] if job.method == "vcm" and "--merge-vertices" not in options else []
         if "--sampler" not in options:
             own += ["--sampler", "independent"]
-        # The first radius of LuxCore; without it the radius follows from the scene.
+        # LuxCore begins with this radius; by default ours is chosen from the scene.
         if job.method in ("ppm", "bpm", "vcm") and "--radius" not in options:
             own += ["--radius", "0.001"]
         self.program, self.job, self.options = program, job, [*own, *options]

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 namespace wavecrest {
 
 std::vector<std::string> unmetFloors(const MetricValues& noiseFloors, std::optional<double> bestRelmse) {
@@ -17,6 +19,10 @@ std::vector<std::string> unmetFloors(const MetricValues& noiseFloors, std::optio
                                 relmse->second, *bestRelmse));
   }
   return unmet;
+}
+
+bool sameFloors(const MetricValues& a, const MetricValues& b) {
+  return nlohmann::json(a).dump() == nlohmann::json(b).dump();
 }
 
 }  // namespace wavecrest

@@ -1,4 +1,5 @@
-// What a reference's own noise must not exceed, so that images are not measured by it.
+// What a reference's own noise must not exceed, so that images are not measured by it. Floors also tell references
+// apart.
 #pragma once
 
 #include <optional>
@@ -15,5 +16,8 @@ constexpr double kLeastSsimFloor = 0.995, kMostRelmseShare = 0.1;
 // The floors that are not met, each as a sentence's part, "SSIM of a perfect image is 0.901, below 0.995". bestRelmse:
 // of the best run that is measured against the reference, where one is known.
 std::vector<std::string> unmetFloors(const MetricValues& noiseFloors, std::optional<double> bestRelmse = {});
+
+// Whether two references may be the same by their floors. NaN is the same as NaN.
+bool sameFloors(const MetricValues& a, const MetricValues& b);
 
 }  // namespace wavecrest

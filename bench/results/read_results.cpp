@@ -1,10 +1,10 @@
 #include "bench/results/read_results.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "bench/results/distinct_values.h"
+#include "bench/results/noise_floors.h"
 #include "bench/results/schema.h"
 #include "bench/results/within_folder.h"
 
@@ -153,14 +153,13 @@ void mergeCampaign(CampaignResults& all, const CampaignResults& part, const fs::
 
 // Adds scenes that are new. A known one must have the same content, size and reference.
 void mergeScenes(CampaignResults& all, const CampaignResults& part, const fs::path& path, const fs::path& first) {
-  const auto text = [](const MetricValues& floors) { return nlohmann::json(floors).dump(); };  // the same for NaN
   for (const SceneRecord& scene : part.scenes) {
     const SceneRecord* known = all.findScene(scene.name);
     if (known == nullptr) {
       all.scenes.push_back(scene);
     } else if (known->hash != scene.hash || known->width != scene.width || known->height != scene.height) {
       fail(path, "its scene " + scene.name + " is another", first);
-    } else if (text(known->noiseFloors) != text(scene.noiseFloors)) {
+    } else if (!sameFloors(known->noiseFloors, scene.noiseFloors)) {
       // References are compared by their noise floors, as the file paths may differ.
       fail(path, "its reference of " + scene.name + " is another", first);
     }

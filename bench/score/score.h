@@ -4,7 +4,8 @@
 // have the committed hash (expected.h). Only a build that did not make the hash may round otherwise: its image must
 // look like the committed picture (picture.h). A build that renders something else gets no score. The relMSE against
 // the scene's committed reference after slices 1, 2, 4 and 8 says what the speed buys. One thread then renders the
-// slices again for the speed of a core and the stages, and as many processes as threads a slice each.
+// slices again, which gives the speed of a core and the cost of each stage. Last, as many processes as threads render
+// one slice each at the same time.
 #pragma once
 
 #include <array>

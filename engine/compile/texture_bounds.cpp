@@ -2,25 +2,10 @@
 
 #include <algorithm>
 
+#include "engine/scene/texture_mean.h"
+
 namespace wavecrest {
 namespace {
-
-// Mean over the texels of a bitmap, or of a checkerboard's two colours.
-Rgb mean(const Texture& texture) {
-  if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {
-    Rgb sum{};
-    for (size_t i = 0; i < 3; ++i) sum[i] = (checkerboard->color0[i] + checkerboard->color1[i]) / 2;
-    return sum;
-  }
-  const Bitmap& bitmap = *std::get<BitmapTexture>(texture.kind).bitmap;
-  Rgb sum{};
-  const size_t pixels = size_t{bitmap.width} * bitmap.height;
-  for (size_t p = 0; p < pixels; ++p) {
-    for (size_t i = 0; i < 3; ++i) sum[i] += bitmap.pixels[p * bitmap.channels + (bitmap.channels == 3 ? i : 0)];
-  }
-  for (double& channel : sum) channel /= static_cast<double>(std::max<size_t>(pixels, 1));
-  return sum;
-}
 
 // The fourth texel of the cells of a baked attribute lies outside of their triangles (engine/load/mesh_attributes.h).
 bool isOutside(const BitmapTexture& texture, size_t pixel) {

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "engine/load/color.h"
 #include "engine/load/ior_table.h"
 #include "engine/load/materials.h"
 #include "engine/load/values.h"
+#include "engine/scene/texture_mean.h"
 
 namespace wavecrest {
 
@@ -24,14 +24,8 @@ std::string onlyLenient(const LoadContext& context, const std::string& effect) {
 
 // The mean of all values of a texture, of a checkerboard that of its two colours.
 double meanValueOf(const Texture& texture) {
-  std::vector<double> values;
-  if (const auto* board = std::get_if<CheckerboardTexture>(&texture.kind)) {
-    for (const Rgb& color : {board->color0, board->color1}) values.insert(values.end(), color.begin(), color.end());
-  } else {
-    const std::vector<float>& pixels = std::get<BitmapTexture>(texture.kind).bitmap->pixels;
-    values.assign(pixels.begin(), pixels.end());
-  }
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(std::max<size_t>(values.size(), 1));
+  const Rgb colour = mean(texture);
+  return (colour[0] + colour[1] + colour[2]) / 3;
 }
 
 // The microfacet distribution, which is Beckmann by default.

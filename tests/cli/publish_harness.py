@@ -36,6 +36,18 @@ MADE_UP = {
 }
 
 
+def remove_scores(database, runs):
+    """Removes what was measured of the runs for which the condition `runs` holds."""
+    for table in ("stage", "measurement", "snapshot"):
+        database.execute(f"DELETE FROM {table} WHERE run IN (SELECT id FROM run WHERE {runs})")
+
+
+def remove_runs(database, runs):
+    """Removes the runs for which the condition holds."""
+    remove_scores(database, runs)
+    database.execute(f"DELETE FROM run WHERE {runs}")
+
+
 class PublishTest(CommandTest):
     """A test that makes a campaign in its folder, and publishes it."""
 

@@ -10,7 +10,7 @@ import sys
 import unittest
 
 from harness import WAVECREST
-from publish_harness import MADE_UP, RESTORE, ROOT, PublishTest  # which makes curves be found
+from publish_harness import MADE_UP, RESTORE, ROOT, PublishTest, remove_runs, remove_scores  # which makes curves be found
 
 import curves
 
@@ -96,9 +96,7 @@ class Publishing(PublishTest):
         self.assertIn("seeds of cornell-diffuse pt are missing", self.publish().stderr)
         # One that was stopped after pt, and before its second scene.
         database.execute("UPDATE run SET seed = 1, state = 'done' WHERE id = 1")
-        for table in ("stage", "measurement", "snapshot"):
-            database.execute(f"DELETE FROM {table} WHERE run IN (SELECT id FROM run WHERE method = 'lt')")
-        database.execute("DELETE FROM run WHERE method = 'lt'")
+        remove_runs(database, "method = 'lt'")
         database.execute("UPDATE campaign SET value = value || ' cornell-mirror' WHERE key = 'scenes'")
         database.commit()
         open_pairs = "cornell-diffuse lt, cornell-mirror pt, cornell-mirror lt"
@@ -109,8 +107,7 @@ class Publishing(PublishTest):
     def test_runs_without_measurements_are_refused(self):
         self.made_up_campaign()
         database = sqlite3.connect(self.path("a/results.sqlite"))
-        database.execute("DELETE FROM measurement WHERE run = 1")
-        database.execute("DELETE FROM snapshot WHERE run = 1")
+        remove_scores(database, "id = 1")
         database.commit()
         database.close()
         self.assertIn("publish: cornell-diffuse pt seed 1: no measurements; expected", self.publish().stderr)
@@ -180,10 +177,7 @@ class Publishing(PublishTest):
         database.execute("INSERT OR REPLACE INTO campaign VALUES('time', 'my room=100 my house=50')")
         database.execute("INSERT OR REPLACE INTO campaign VALUES('snapshots', 'my room=log my house=5')")
         # The second one is under way.
-        late = "SELECT id FROM run WHERE scene = 'my house' AND method = 'pt'"
-        for table in ("measurement", "snapshot"):
-            database.execute(f"DELETE FROM {table} WHERE run IN ({late})")
-        database.execute(f"DELETE FROM run WHERE id IN ({late})")
+        remove_runs(database, "scene = 'my house' AND method = 'pt'")
         database.commit()
         database.close()
         self.assertIn("publish: my house pt: neither rendered nor refused; expected", self.publish().stderr)
@@ -217,8 +211,7 @@ class Publishing(PublishTest):
     def test_pictures_are_those_of_their_scenes_beside_one_that_all_rows_refuse(self):
         self.made_up_campaign()
         database = sqlite3.connect(self.path("a/results.sqlite"))
-        for table in ("measurement", "snapshot"):
-            database.execute(f"DELETE FROM {table} WHERE run IN (SELECT id FROM run WHERE scene = 'cornell-diffuse')")
+        remove_scores(database, "scene = 'cornell-diffuse'")
         database.execute("UPDATE run SET state = 'refused', reason = 'has no light' WHERE scene = 'cornell-diffuse'")
         database.commit()
         database.close()

@@ -11,7 +11,7 @@ import sys
 import unittest
 
 from harness import INPUT, TIMEOUT_SECONDS, WAVECREST
-from publish_harness import MADE_UP, RESTORE, ROOT, PublishTest
+from publish_harness import MADE_UP, RESTORE, ROOT, PublishTest, remove_runs
 
 
 class Restoring(PublishTest):
@@ -63,9 +63,7 @@ class Restoring(PublishTest):
     def test_scenes_under_way_are_published_beside_the_page_and_restored(self):
         self.made_up_campaign()
         database = sqlite3.connect(self.path("a/results.sqlite"))
-        for table in ("measurement", "snapshot"):
-            database.execute(f"DELETE FROM {table} WHERE run = (SELECT id FROM run WHERE scene = 'lafortune-room' AND method = 'pt')")
-        database.execute("DELETE FROM run WHERE scene = 'lafortune-room' AND method = 'pt'")
+        remove_runs(database, "scene = 'lafortune-room' AND method = 'pt'")
         database.execute("UPDATE campaign SET value = value || ' pool-interior' WHERE key = 'scenes'")
         options = json.dumps({"scenes": ["rooms/lafortune-room.xml", "veach-door"], "--crop": ["lafortune-room:1,2,3x4"]})
         database.execute("INSERT OR REPLACE INTO campaign VALUES('options', ?)", [options])
@@ -111,9 +109,7 @@ class Restoring(PublishTest):
     def test_scenes_under_way_need_a_finished_one(self):
         self.made_up_campaign({"lafortune-room": MADE_UP["lafortune-room"]})
         database = sqlite3.connect(self.path("a/results.sqlite"))
-        for table in ("measurement", "snapshot"):
-            database.execute(f"DELETE FROM {table} WHERE run = 1")
-        database.execute("DELETE FROM run WHERE id = 1")
+        remove_runs(database, "id = 1")
         database.commit()
         database.close()
         self.assertIn("no scene is finished", self.publish("--under-way").stderr)

@@ -103,21 +103,21 @@ TEST(WatchedSession, looksOnceAfterASlowFirstIteration) {
   EXPECT_EQ(looks, 1u);
 }
 
-// It begins at an hour, so that the cost of the looks puts none of them off.
-TEST(WatchedSession, looksAfterEachStepThatIsLongerThanTheTimeBetweenLooks) {
+// Renders with steps of so many seconds. It begins at an hour, so that the cost of the looks puts none of them off.
+void expectLooks(double step, double until, const std::vector<double>& expected) {
   std::vector<double> looks;
-  WatchedSession session = sessionOfChains(3600, 3, looks);
-  session.renderUntil(std::nullopt, 3612);
-  EXPECT_EQ(session.progressSeconds(), 3612);
-  EXPECT_EQ(looks, (std::vector<double>{3600, 3603, 3606, 3609}));
+  WatchedSession session = sessionOfChains(3600, step, looks);
+  session.renderUntil(std::nullopt, until);
+  EXPECT_EQ(session.progressSeconds(), until);
+  EXPECT_EQ(looks, expected);
+}
+
+TEST(WatchedSession, looksAfterEachStepThatIsLongerThanTheTimeBetweenLooks) {
+  expectLooks(3, 3612, {3600, 3603, 3606, 3609});
 }
 
 TEST(WatchedSession, looksASecondApartWhereStepsAreAlmostAsLong) {
-  std::vector<double> looks;
-  WatchedSession session = sessionOfChains(3600, 0.75, looks);
-  session.renderUntil(std::nullopt, 3606);
-  EXPECT_EQ(session.progressSeconds(), 3606);
-  EXPECT_EQ(looks, (std::vector<double>{3600, 3601.5, 3603, 3604.5}));
+  expectLooks(0.75, 3606, {3600, 3601.5, 3603, 3604.5});
 }
 
 TEST(WatchedSession, leavesTheLookAtACallersLimitToTheCaller) {
