@@ -31,10 +31,10 @@ TEST(Profiles, studyHasItsSizeLightPathsAndTimeForItsFindings) {
   EXPECT_EQ(study.lightPaths, 1024u * 768u);
   EXPECT_EQ(study.effort("cornell-mirror").seconds, 6 * 60);
   EXPECT_EQ(study.effort("cornell-spheres").seconds, 12 * 60);
-  EXPECT_EQ(study.effort("lafortune-room").seconds, 21 * 60);
+  EXPECT_EQ(study.effort("lafortune-room").seconds, 29 * 60);
   EXPECT_EQ(study.effort("pool-interior").seconds, 24 * 60);
   EXPECT_EQ(study.effort("dragon-caustics-glossy").seconds, 40 * 60);
-  EXPECT_EQ(study.effort("veach-door").seconds, 41 * 60);
+  EXPECT_EQ(study.effort("veach-door").seconds, 53 * 60);
   EXPECT_EQ(study.effort("a-scene-of-others").seconds, 12 * 60);
   EXPECT_TRUE(study.effort("veach-door").logarithmicFirst);
   EXPECT_EQ(findProfile("standard")->lightPaths, study.lightPaths);
