@@ -32,7 +32,7 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-// Throws where no scratch folder can be made: called before anything is measured with processes that write into one.
+// Throws if no scratch folder can be created. To be called before measuring with child processes, which need one.
 inline void requireScratchFolders() { const ScratchFolder probe; }
 
 // What a render is asked for, in options that every version of wavecrest has. Variables such as WAVECREST_SAMPLER are

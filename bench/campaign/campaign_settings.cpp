@@ -19,8 +19,9 @@ Effort paperEffort(std::string_view scene) {
 }
 
 // Minutes of a run by the paths that findings need (bench/claims), as runs are compared with the study by paths: at a
-// factor of 0.3 every method that a finding names has enough of them, on two threads of an AMD EPYC Zen 4, in
-// the longer ones (from 24 minutes) also of an Intel Xeon Ice Lake. Scenes of others have those of cornell-spheres.
+// factor of 0.3 every method that a finding names has enough of them on two threads of an AMD EPYC Zen 4. From 24
+// minutes on they are estimated for an Intel Xeon Ice Lake, which is slower. Scenes of others have those of
+// cornell-spheres.
 constexpr std::pair<std::string_view, double> kMinutesForPaths[] = {
     {"cornell-diffuse", 6}, {"cornell-mirror", 6},   {"cornell-glossy", 6},          {"lafortune-room", 29},
     {"pool-interior", 24},  {"dragon-caustics", 40}, {"dragon-caustics-glossy", 40}, {"veach-door", 53}};

@@ -1,5 +1,5 @@
-// What a reference's own noise must not exceed, so that images are not measured by it. Floors also tell references
-// apart.
+// Limits on the noise of a reference, below which scores tell images apart and not the reference's noise. A noise floor
+// is what an image without error scores against the noisy reference; references with other floors are other references.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ constexpr double kLeastSsimFloor = 0.995, kMostRelmseShare = 0.1;
 // of the best run that is measured against the reference, where one is known.
 std::vector<std::string> unmetFloors(const MetricValues& noiseFloors, std::optional<double> bestRelmse = {});
 
-// Whether two references may be the same by their floors. NaN is the same as NaN.
+// Whether the noise floors of two references are equal, so that they may be the same reference. NaN equals NaN.
 bool sameFloors(const MetricValues& a, const MetricValues& b);
 
 }  // namespace wavecrest

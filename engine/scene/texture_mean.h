@@ -9,7 +9,7 @@
 
 namespace wavecrest {
 
-// Over the texels of a bitmap, or over a checkerboard's two colours. One channel stands for all three.
+// The mean colour of a bitmap's texels, or of a checkerboard's two colours. A bitmap of one channel is grey.
 inline Rgb mean(const Texture& texture) {
   Rgb sum{};
   if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {

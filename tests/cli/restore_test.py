@@ -118,7 +118,8 @@ class Restoring(PublishTest):
     def test_a_figure_is_repeated_by_all_rows(self):
         for name in ("bench", "scenes", "tools"):
             (self.folder / name).symlink_to(ROOT / name)
-        # In place of a build and ten seconds a run: this program, with small and short runs, whose time no other process takes.
+        # In place of a build and runs of ten seconds: this program with small, short runs, limited by processor time,
+        # as a busy machine leaves too little of a second of wall time for a whole image.
         small = "(10s) word=1s ;; scenes/references/1024x768) word=small ;;"
         wrapper = f"""#!/bin/sh
 for word; do
