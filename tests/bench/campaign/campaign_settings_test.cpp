@@ -66,7 +66,7 @@ TEST(Profiles, quickRendersTenMinutesAndStandardAnHourOrTwo) {
   EXPECT_LE(seconds(*findProfile("quick")), 600);
   EXPECT_GE(seconds(*findProfile("standard")), 3600);
   EXPECT_LE(seconds(*findProfile("standard")), 7500);
-  EXPECT_NEAR(seconds(*findProfile("study")), 42.5 * 3600, 1800);
+  EXPECT_NEAR(seconds(*findProfile("study")), 46.8 * 3600, 1800);
   EXPECT_GE(findProfile("quick")->seeds, 2u) << "one seed has no error band";
 }
 
