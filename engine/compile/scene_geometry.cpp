@@ -163,9 +163,10 @@ template BoundingSphere SceneGeometry::bounds<float>() const;
 template BoundingSphere SceneGeometry::bounds<double>() const;
 
 std::vector<double> SceneGeometry::groupRadii() const {
-  std::vector<double> radii;
-  radii.reserve(groups_.size() + 1);
-  for (const Group& group : groups_) radii.push_back(group.radius);
+  std::vector<double> radii(scene_.groups.size(), 0.0);
+  for (size_t i = 0; i < groupOf_.size(); ++i) {
+    if (groupOf_[i] != kNone) radii[i] = groups_[groupOf_[i]].radius;
+  }
   return radii;
 }
 

@@ -25,7 +25,8 @@ class SceneGeometry {
   // Of the world as S has it, with the boxes of instances.
   template <class S>
   BoundingSphere bounds() const;
-  // Of spheres about the origins of groups with all of the group in them.
+  // Of each of the scene's groups, the radius of a sphere about its origin with all of it in; 0: it is not kept, or has
+  // no primitives.
   std::vector<double> groupRadii() const;
 
   // Primitives of the groups come after those of the world. This and the next throw SceneError where there are more

@@ -82,7 +82,8 @@ struct Level {
     for (const Part& part : parts) boxes.push_back(part.tree.bounds);
     return unionOf(boxes.data(), boxes.size());
   }
-  // Room for all nodes of the parts, and for one that joins the parts.
+  // Room for all nodes of the parts, and for one that joins the parts. Never none: a reference to an instance at the
+  // arena's begin would be kBvhEnd.
   size_t nodes() const {
     size_t count = 1;
     for (const Part& part : parts) count += part.tree.totals.nodes;
@@ -124,6 +125,7 @@ class Layout {
     }
     return join(references, boxes, level.parts.size());
   }
+  size_t laidNodes() const { return nextNode_ / sizeof(BvhNode); }
   void write(size_t index, const InstanceLeaf& leaf) const { new (place(referenceOf(index))) InstanceLeaf(leaf); }
 
  private:
@@ -287,7 +289,6 @@ Bvh::Bvh(const PrimitiveSource& primitives, std::span<const BvhGroup> groups, st
   const size_t used = nodes * sizeof(BvhNode) + instances.size() * sizeof(InstanceLeaf) + leafBytes;
   if (used / kBvhUnit > kBvhOffsetMask) throw std::runtime_error("the hierarchy is too large");
   arena_ = MemoryBlock(used, sizeof(BvhNode));
-  nodes_ = nodes;
 
   // Lay out the world, then the groups, then the instances, which refer to the roots of their groups.
   Layout layout(arena_.get(), nodes, instances.size(), parallelFor);
@@ -301,6 +302,7 @@ Bvh::Bvh(const PrimitiveSource& primitives, std::span<const BvhGroup> groups, st
     const uint32_t group = instances[i].group;
     layout.write(i, leafOf(instances[i], i, groups[group].radius, roots[group]));
   }
+  nodes_ = layout.laidNodes();
 }
 
 }  // namespace wavecrest

@@ -94,7 +94,7 @@ class Bvh {
       : Bvh(PrimitiveSource::of(records, count), origins, inTurn) {}
   const BvhView& view() const { return view_; }
   size_t bytes() const { return arena_.size(); }
-  size_t nodes() const { return nodes_; }
+  size_t nodes() const { return nodes_; }  // none where all primitives are in one leaf
 
  private:
   MemoryBlock arena_;

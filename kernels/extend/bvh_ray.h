@@ -58,7 +58,7 @@ struct alignas(64) BvhRay {
   float shear[3];
   BvhHit hit;         // the nearest so far
   BvhHit notNearest;  // where a leaf writes what is not: keep() has no branch
-  uint32_t index, at, waiting;
+  uint32_t index, at, waiting = 0;
   uint32_t stack[kBvhStack];
 
   // ray: the index by which the caller knows it. end: the distance beyond which no hit counts.

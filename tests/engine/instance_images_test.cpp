@@ -46,7 +46,7 @@ class InstanceImagesTest : public testing::TestWithParam<Method> {};
 
 TEST_P(InstanceImagesTest, areThoseOfCopies) {
   const Scene scene = furnishedRoom();
-  const uint64_t count = GetParam() == Method::mlt ? samples(64, 16) : effort(16, 4);
+  const uint64_t count = GetParam() == Method::mlt ? samples(64, 16) : samples(16, 4);
   const SeedMeans kept = renderSeeds(scene, settingsOfInstances(GetParam(), Instancing::kept), count, 1000);
   const SeedMeans copied = renderSeeds(scene, settingsOfInstances(GetParam(), Instancing::expanded), count, 2000);
   expectSameTruth(kept, copied, std::string(toString(GetParam())));

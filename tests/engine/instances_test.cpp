@@ -189,16 +189,22 @@ TEST(Instances, areMetWhereCopiesAreInDouble) { expectSameArrivals<double>(false
 TEST(Instances, ofSpheresAreMetWhereCopiesAre) { expectSameArrivals<float>(true); }
 TEST(Instances, ofSpheresAreMetWhereCopiesAreInDouble) { expectSameArrivals<double>(true); }
 
-// In the group the product of the squares of the direction's length and of the radius is below what float holds.
-TEST(Instances, ofTinySpheresAreMetAtTheirSurface) {
-  constexpr double kRadius = 1e-8, kScale = 1e12, kWorldRadius = kRadius * kScale;
+// A sphere of radius 1e-8 in a group, and an instance of it.
+Scene tinySphere(double scale) {
   Scene scene;
   scene.groups.push_back({.id = "tiny", .source = {}});
-  Sphere sphere{.center = {0, 0, 0}, .radius = kRadius};
+  Sphere sphere{.center = {0, 0, 0}, .radius = 1e-8};
   sphere.toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
   addShape(scene, sphere, addDiffuse(scene, 0.5, 0.5, 0.5)).group = 0;
-  addInstance(scene, 0, placedAt({0, 0, 0}, {{kScale, 0, 0}, {0, kScale, 0}, {0, 0, kScale}}));
-  setCamera(scene, {0, 0, 3 * kWorldRadius}, 60, 8, 8);
+  addInstance(scene, 0, placedAt({0, 0, 0}, {{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}}));
+  setCamera(scene, {0, 0, 3e-8 * scale}, 60, 8, 8);
+  return scene;
+}
+
+// In the group the product of the squares of the direction's length and of the radius is below what float holds.
+TEST(Instances, ofTinySpheresAreMetAtTheirSurface) {
+  constexpr double kScale = 1e12, kWorldRadius = 1e-8 * kScale;
+  const Scene scene = tinySphere(kScale);
   const auto compiled = compileScene<float>(scene, Accel::bvh, true, Instancing::kept);
   Wave<float> wave(kCapacity, {});
   StageCounters counters;
@@ -271,15 +277,66 @@ TEST(Instances, inTheSamePlaceAreTakenInTheirOrder) {
   }
 }
 
+// What compileScene says of a scene that it refuses, or nothing.
+std::string compileRefusal(const Scene& scene, Instancing instancing) {
+  try {
+    compileScene<float>(scene, Accel::bvh, true, instancing);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return {};
+}
+
 // Rays are intersected in the group's space, whose products float must hold.
 TEST(Instances, ofTinyGroupsAreRefusedUnlessCopied) {
   Scene scene;
-  scene.groups.push_back({.id = "tiny", .source = {}});
-  addShape(scene, Rectangle{{0, 0, 0}, {1e-13, 0, 0}, {0, 1e-13, 0}}, addDiffuse(scene, 0.5, 0.5, 0.5)).group = 0;
-  addInstance(scene, 0, placedAt({0, 0, 0}, {{1e13, 0, 0}, {0, 1e13, 0}, {0, 0, 1e13}}));
+  scene.groups.push_back({.id = "empty", .source = {}});
+  scene.groups.push_back({.id = "tiny", .source = {.file = "tiny.xml", .line = 3}});
+  addShape(scene, Rectangle{{0, 0, 0}, {1e-13, 0, 0}, {0, 1e-13, 0}}, addDiffuse(scene, 0.5, 0.5, 0.5)).group = 1;
+  addInstance(scene, 1, placedAt({0, 0, 0}, {{1e13, 0, 0}, {0, 1e13, 0}, {0, 0, 1e13}}));
   setCamera(scene, {0, 0, 2}, 60, 8, 8);
-  EXPECT_THROW(compileScene<float>(scene, Accel::bvh, true, Instancing::kept), SceneError);
-  EXPECT_NO_THROW(compileScene<float>(scene, Accel::bvh, true, Instancing::expanded));
+  const std::string refusal = compileRefusal(scene, Instancing::kept);
+  EXPECT_TRUE(refusal.starts_with("tiny.xml:3: the radius of shapegroup tiny is 7")) << refusal;
+  EXPECT_TRUE(refusal.ends_with(", or `--instances expand`")) << refusal;
+  EXPECT_EQ(compileRefusal(scene, Instancing::expanded), "");
+}
+
+// The square of the length of a direction there, or its product with a face's edges.
+TEST(Instances, atScalesThatFloatDoesNotHoldAreRefusedUnlessCopied) {
+  const auto expectRefusal = [](Scene scene, const char* what) {
+    scene.instances[0].source = {.file = "placed.xml", .line = 5};
+    const std::string refusal = compileRefusal(scene, Instancing::kept);
+    EXPECT_TRUE(refusal.starts_with("placed.xml:5: ")) << what << ": " << refusal;
+    EXPECT_TRUE(refusal.ends_with("expected `--instances expand`")) << what << ": " << refusal;
+    EXPECT_EQ(compileRefusal(scene, Instancing::expanded), "") << what;
+  };
+  EXPECT_EQ(compileRefusal(tinySphere(1e12), Instancing::kept), "");
+  expectRefusal(tinySphere(1e20), "enlarged");
+  Scene reduced;
+  reduced.groups.push_back({.id = "large", .source = {}});
+  addShape(reduced, Rectangle{{-1e12, -1e12, 0}, {2e12, 0, 0}, {0, 2e12, 0}}, addDiffuse(reduced, 0.5, 0.5, 0.5))
+      .group = 0;
+  addInstance(reduced, 0, placedAt({0, 0, 0}, {{1e-15, 0, 0}, {0, 1e-15, 0}, {0, 0, 1e-15}}));
+  setCamera(reduced, {0, 0, 2e-3}, 60, 8, 8);
+  expectRefusal(reduced, "reduced");
+}
+
+// A sphere counts with the radius of its copies.
+TEST(Instances, ofSpheresAreRefusedByTheRadiusOfTheirCopies) {
+  const auto refusalAt = [](double radius, double scale) {
+    Scene scene;
+    scene.groups.push_back({.id = "ball", .source = {}});
+    const uint32_t grey = addDiffuse(scene, 0.5, 0.5, 0.5);
+    addShape(scene, Rectangle{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}}, grey);
+    Sphere sphere{.center = {0, 0, 0}, .radius = radius};
+    sphere.toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+    addShape(scene, sphere, grey).group = 0;
+    addInstance(scene, 0, placedAt({0, 0, 0.5}, {{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}}));
+    setCamera(scene, {0, 0, 2}, 60, 8, 8);
+    return compileRefusal(scene, Instancing::expanded);
+  };
+  EXPECT_EQ(refusalAt(1e-20, 1e19), "");
+  EXPECT_NE(refusalAt(0.1, 1e-19).find("a sphere's radius is 1e-20;"), std::string::npos);
 }
 
 // ---- closed meshes --------------------------------------------------------------------------------------------------

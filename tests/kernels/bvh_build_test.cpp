@@ -28,6 +28,7 @@ class Contents {
   void check(const BvhView& bvh, uint32_t reference, std::vector<Bounds> boxes) {
     switch (entryOf(reference)) {
       case BvhEntry::node: {
+        ++nodes;
         const auto& node = bvh.at<BvhNode>(reference);
         for (size_t i = 0; i < kBvhWidth && node.children[i] != kBvhEnd; ++i) {
           Bounds box;
@@ -71,6 +72,7 @@ class Contents {
     }
   }
   std::map<uint32_t, size_t> slots;  // how many hold each id
+  size_t nodes = 0;
 
  private:
   static void checkPoint(const std::vector<Bounds>& boxes, size_t axis, double low, double high) {
@@ -91,6 +93,7 @@ TEST(BvhTest, boxesHoldEverythingBelowThem) {
     for (const auto& record : list) quads += record.kind == static_cast<uint32_t>(PrimitiveKind::quad) ? 1 : 0;
     EXPECT_EQ(contents.slots.size(), count + quads) << "each quad is two triangles, and nothing else is missing";
     for (const auto& [id, times] : contents.slots) EXPECT_LE(times, kLeafSize);
+    EXPECT_EQ(contents.nodes, scene.bvh->nodes()) << count;
   }
 }
 
