@@ -28,10 +28,20 @@ set(WAVECREST_LIGHT_OPTIMIZATION $<$<CONFIG:Release>:-O1>)
 macro(optimize_lightly)
   add_compile_options(${WAVECREST_LIGHT_OPTIMIZATION})
 endmacro()
-# The files of such a folder that do matter.
+# The files of such a folder that do matter. Several of one library are compiled as one in a library of objects
+# (add_optimized_objects).
 function(optimize_fully)
   set_source_files_properties(${ARGN} PROPERTIES
     COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+# add_optimized_objects(NAME TARGET source...): sources of the library TARGET that matter, as the objects NAME; their
+# own options would keep them out of its unity build. After target_link_libraries(TARGET), as they compile with the same.
+function(add_optimized_objects name target)
+  add_library(${name} OBJECT ${ARGN})
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O3>)
+  get_target_property(libraries ${target} LINK_LIBRARIES)
+  target_link_libraries(${name} PRIVATE ${libraries})
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:${name}>)
 endfunction()
 
 if(WAVECREST_ONLY_COMPLETE_KERNELS)

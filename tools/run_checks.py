@@ -24,7 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 JOBS = os.cpu_count() or 1
 TEST_TIMEOUT_SECONDS = 600
 SHOWN_LINES = 12  # of what a failed test said, in the summary
-SHOWN_CASES = 20  # of each step's tests, the slowest
+SHOWN_CASES = 40  # of each step's tests, the slowest
 # A build folder keeps the options of its last configuration: every step says those that some step changes, and resets
 # the choice of kernels, which somebody may have made by hand.
 RELEASE_OPTIONS = (
@@ -92,10 +92,13 @@ def read_junit(tally, step, report):
 
 
 def print_slowest(report):
-    """The tests of a ctest JUnit file that took longest, batches among them."""
-    tests = ElementTree.parse(report).getroot().iter("testcase")
-    slowest = sorted(((float(test.get("time", 0)), test.get("name")) for test in tests), reverse=True)
-    for seconds, name in slowest[:SHOWN_CASES]:
+    """The tests of a ctest JUnit file that took longest, batches and their cases among them."""
+    times = []
+    for file in (report, *(report.parent / "batches").glob("*.xml")):
+        for case in ElementTree.parse(file).getroot().iter("testcase"):
+            name = case.get("name") if file == report else f"{case.get('classname')}.{case.get('name')}"
+            times.append((float(case.get("time", 0)), name))
+    for seconds, name in sorted(times, reverse=True)[:SHOWN_CASES]:
         print(f"    {seconds:6.1f} s  {name}")
 
 

@@ -14,9 +14,7 @@
 namespace wavecrest {
 namespace {
 
-using Json = nlohmann::json;
-
-double positive(const Json& value) {
+double positive(const nlohmann::json& value) {
   const double number = value.get<double>();
   if (!(number > 0 && std::isfinite(number))) throw ScoreFileError("has a figure that is not a positive number");
   return number;
@@ -31,8 +29,8 @@ ScoreSize sizeOf(const std::string& name) {
 }
 
 // What is true of all entries together.
-void readEntries(const Json& entries, MachineScore& score) {
-  for (const Json& entry : entries) {
+void readEntries(const nlohmann::json& entries, MachineScore& score) {
+  for (const nlohmann::json& entry : entries) {
     ++score.entries;
     const auto scene = entry.at("scene").get<std::string>(), method = entry.at("method").get<std::string>();
     const auto image = entry.at("image").get<std::string>();
@@ -47,9 +45,9 @@ void readEntries(const Json& entries, MachineScore& score) {
 
 }  // namespace
 
-bool isScore(const Json& file) { return file.is_object() && file.value("kind", Json()) == "score"; }
+bool isScore(const nlohmann::json& file) { return file.is_object() && file.value("kind", nlohmann::json()) == "score"; }
 
-MachineScore readMachineScore(const Json& file) {
+MachineScore readMachineScore(const nlohmann::json& file) {
   try {
     if (file.at("score_version") != kScoreVersion) {
       throw ScoreFileError(fmt::format("is of another score version than {}", kScoreVersion));
@@ -68,7 +66,7 @@ MachineScore readMachineScore(const Json& file) {
     for (const auto& [method, value] : file.at("method_scores").items()) score.methods[method] = positive(value);
     score.doubts = file.at("doubts").get<std::vector<std::string>>();
     return score;
-  } catch (const Json::exception&) {
+  } catch (const nlohmann::json::exception&) {
     throw ScoreFileError("is no score of wavecrest bench; expected one written by --score SIZE --json FILE");
   }
 }

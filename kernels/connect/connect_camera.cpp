@@ -26,7 +26,7 @@ WAVECREST_INLINE Uniform4 lensNumbers(const StageContext<S>& context, const Wave
 }
 
 // The vertices [begin, end), whose BSDFs are of kBsdfs; shadow rays from `out` on; where they end.
-template <class P, uint32_t kFeatures, uint32_t kBsdfs>
+template <class P, uint32_t kBsdfs>
 WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
                                    size_t begin, size_t end, size_t out) {
   using Real = typename P::Real;
@@ -57,7 +57,7 @@ WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& cont
     const Real woCosine = abs(dot(view.direction, shading.normal));
     const Real wiCosine = abs(shading.wiCosine);
     const Real pdfA = view.pdf * woCosine;
-    const MisSums<Real> mis = loadMis<kFeatures>(paths, i);
+    const MisSums<Real> mis = loadMis<kBidirectional>(paths, i);
     // LT has no other strategy: its weight is 1.
     const Real wLight = pdfA * Real(context.mis.lightPaths > 0 ? 1 / context.mis.lightPaths : 0.0) *
                         behindLens(context.mis, context.depth, mis, bsdf.pdfReverse);
@@ -92,7 +92,7 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
   shadow.claim(wave.joinable);
   size_t out = 0;
   forEachBsdfRange<kFeatures>(wave, wave.joinable, [&](auto bsdfs, size_t begin, size_t end) WAVECREST_LAMBDA {
-    out = joinLens<P, kFeatures, decltype(bsdfs)::value>(context, wave, begin, end, out);
+    out = joinLens<P, decltype(bsdfs)::value>(context, wave, begin, end, out);
   });
   shadow.size = out;
 }

@@ -27,9 +27,8 @@ struct Batch {
 };
 
 // Walks the batch in packets. Entries that rays have to visit alone go to batch.alone.
-template <class S>
-WAVECREST_NOINLINE void walkTogether(const BvhView& bvh, const ShadowRays<S>& rays, LastBlockers& blockers,
-                                     Batch& batch) {
+[[maybe_unused]] WAVECREST_NOINLINE void walkTogether(const BvhView& bvh, const ShadowSegments& rays,
+                                                      LastBlockers& blockers, Batch& batch) {
   // The end of a packet's first ray stands for the ends of all its rays.
   const auto blockerOf = [&](size_t i) HWY_ATTR -> uint32_t& {
     return blockers.towards(rays.originX[i] + rays.directionX[i], rays.originY[i] + rays.directionY[i],
@@ -44,8 +43,8 @@ WAVECREST_NOINLINE void walkTogether(const BvhView& bvh, const ShadowRays<S>& ra
         // Those behind the last ray repeat the first of their packet.
         const Mask present = firstLanes(batch.count - next);
         const size_t i = batch.first + next;
-        const auto lanes = [&](const Column<float>& column)
-                               HWY_ATTR { return select(present, load(column, i), Float(column[i])); };
+        const auto lanes = [&](const float* column)
+                               HWY_ATTR { return select(present, load(column + i), Float(column[i])); };
         packet.begin(next, present, {lanes(rays.originX), lanes(rays.originY), lanes(rays.originZ)},
                      {lanes(rays.directionX), lanes(rays.directionY), lanes(rays.directionZ)}, batch.alone,
                      blockerOf(i));
@@ -59,8 +58,7 @@ WAVECREST_NOINLINE void walkTogether(const BvhView& bvh, const ShadowRays<S>& ra
 }
 
 // Finishes the rays that packets have left, each from the entries that were left to it.
-template <class S>
-WAVECREST_NOINLINE void finishAlone(const BvhView& bvh, const ShadowRays<S>& rays, Batch& batch) {
+[[maybe_unused]] WAVECREST_NOINLINE void finishAlone(const BvhView& bvh, const ShadowSegments& rays, Batch& batch) {
   size_t next = 0;
   walkBvh<BvhRay<true>>(
       bvh,
@@ -87,7 +85,7 @@ WAVECREST_NOINLINE void finishAlone(const BvhView& bvh, const ShadowRays<S>& ray
 // Whether packets of rays like those of the batch are worth it: many of them were blocked in their packet, or hardly
 // any is left to finish alone. kernels/MEASUREMENTS.md has the shares of some scenes. Call between walkTogether and
 // finishAlone.
-bool goesTogether(const Batch& batch) {
+[[maybe_unused]] bool goesTogether(const Batch& batch) {
   size_t blocked = 0, left = 0;
   for (size_t i = 0; i < batch.count; ++i) {
     const bool open = batch.visible[i] != 0;
@@ -98,8 +96,7 @@ bool goesTogether(const Batch& batch) {
 }
 
 // Writes `visible` of each ray. A first small batch shows whether the others go in packets too.
-template <class S>
-WAVECREST_INLINE void walkAll(const BvhView& bvh, const ShadowRays<S>& rays, float* visible) {
+WAVECREST_INLINE void walkAll(const BvhView& bvh, const ShadowSegments& rays, float* visible) {
   size_t first = 0;
   if constexpr (kPackets) {
     LastBlockers blockers(bvh);
@@ -120,8 +117,7 @@ WAVECREST_INLINE void walkAll(const BvhView& bvh, const ShadowRays<S>& rays, flo
 
 template <class P>
 void occludeBvh(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  using S = typename P::Storage;
-  occludeThrough(context, wave, [](const BvhView& bvh, const ShadowRays<S>& rays, float* visible) HWY_ATTR {
+  occludeThrough(context, wave, [](const BvhView& bvh, const ShadowSegments& rays, float* visible) HWY_ATTR {
     walkAll(bvh, rays, visible);
   });
 }

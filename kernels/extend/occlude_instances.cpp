@@ -11,8 +11,7 @@ WAVECREST_SIMD_BEGIN
 
 template <class P>
 void occludeInstances(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  using S = typename P::Storage;
-  occludeThrough(context, wave, [](const BvhView& bvh, const ShadowRays<S>& rays, float* visible) HWY_ATTR {
+  occludeThrough(context, wave, [](const BvhView& bvh, const ShadowSegments& rays, float* visible) HWY_ATTR {
     walkShadowRaysAlone<PlacedRayOf<true>>(bvh, rays, 0, visible);
   });
 }

@@ -7,16 +7,32 @@
 
 WAVECREST_SIMD_BEGIN
 
+// What walks read of shadow rays. It is in float under every precision, so that walks are compiled once.
+struct ShadowSegments {
+  size_t size;
+  const float *originX, *originY, *originZ, *directionX, *directionY, *directionZ;
+
+  template <class S>
+  explicit ShadowSegments(const ShadowRays<S>& rays)
+      : size(rays.size),
+        originX(rays.originX),
+        originY(rays.originY),
+        originZ(rays.originZ),
+        directionX(rays.directionX),
+        directionY(rays.directionY),
+        directionZ(rays.directionZ) {}
+};
+
 // Shadow ray i, for which the walker's index is `index`. Ray: of bvh_ray.h, or one that knows instances.
-template <class Ray, class S>
-WAVECREST_INLINE void beginShadowRay(Ray& ray, size_t index, const ShadowRays<S>& rays, size_t i) {
+template <class Ray>
+WAVECREST_INLINE void beginShadowRay(Ray& ray, size_t index, const ShadowSegments& rays, size_t i) {
   ray.begin(index, rays.originX[i], rays.originY[i], rays.originZ[i], rays.directionX[i], rays.directionY[i],
             rays.directionZ[i], kShadowEnd);
 }
 
 // Each ray from `next` on alone. Writes `visible` of each.
-template <class Ray, class S>
-WAVECREST_NOINLINE void walkShadowRaysAlone(const BvhView& bvh, const ShadowRays<S>& rays, size_t next,
+template <class Ray>
+WAVECREST_NOINLINE void walkShadowRaysAlone(const BvhView& bvh, const ShadowSegments& rays, size_t next,
                                             float* visible) {
   walkBvh<Ray>(
       bvh,
@@ -36,7 +52,7 @@ WAVECREST_INLINE void occludeThrough(const StageContext<S>& context, Wave<S>& wa
   const size_t count = shadow.size;
   context.counters->raysShadow += count;
   const Column<float>& visible = wave.visibility.visible;
-  walkAll(*context.scene->bvh, shadow, visible);
+  walkAll(*context.scene->bvh, ShadowSegments(shadow), visible);
   for (size_t i = 0; i < count; i += kLanes) {
     addVisible(context, wave, (load(visible, i) > Float(0)) & firstLanes(count - i), i);
   }

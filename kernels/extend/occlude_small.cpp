@@ -38,8 +38,7 @@ WAVECREST_INLINE Scaled scaledDown(Vec3<Float> direction) {
 }
 
 // Whether the doubtful rays of block i are blocked, decided one by one.
-template <class S>
-WAVECREST_NOINLINE Mask blockedByLeaves(const SmallSceneView& scene, const ShadowRays<S>& shadow, Mask doubtful,
+WAVECREST_NOINLINE Mask blockedByLeaves(const SmallSceneView& scene, const ShadowSegments& shadow, Mask doubtful,
                                         size_t i) {
   HWY_ALIGN uint32_t places[kLanes], blocked[kLanes] = {};
   store(compress(laneIndex(), doubtful), places);
@@ -70,7 +69,7 @@ void occludeSmall(const StageContext<typename P::Storage>& context, Wave<typenam
     intersectAll(scene, origin, scaled.direction, found);
     Mask blocked = found.rays | (found.least <= Float(2));
     const Mask doubtful = andNot(present & (found.least < Float(kNothingMet)), blocked);
-    if (any(doubtful)) blocked = blocked | blockedByLeaves(scene, shadow, doubtful, i);
+    if (any(doubtful)) blocked = blocked | blockedByLeaves(scene, ShadowSegments(shadow), doubtful, i);
     addVisible(context, wave, andNot(present, blocked), i);
   }
   shadow.size = 0;

@@ -6,6 +6,7 @@
 // 1997, 11.5). What is due to the current state is added up and splatted when the chain leaves it, so a step splats
 // once.
 #include "kernels/columns/chains.h"
+#include "kernels/sampling/chain_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN

@@ -4,6 +4,7 @@
 // proposal, as far as they are known before the walks. METHODS 7.2: a large step draws every number afresh, a small one
 // moves those that the current path used.
 #include "kernels/columns/chains.h"
+#include "kernels/sampling/chain_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN

@@ -7,6 +7,7 @@
 // length that the engine wants.
 #include "kernels/mutate/path_lanes.h"
 #include "kernels/mutate/path_law_lanes.h"
+#include "kernels/sampling/chain_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN

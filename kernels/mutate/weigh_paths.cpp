@@ -10,6 +10,7 @@
 #include "kernels/mutate/path_lanes.h"
 #include "kernels/mutate/path_law_lanes.h"
 #include "kernels/mutate/path_pattern.h"
+#include "kernels/sampling/chain_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN

@@ -14,6 +14,7 @@
 #include "kernels/bsdf/passage_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/mutate/path_law.h"
+#include "kernels/sampling/chain_lanes.h"
 #include "kernels/stage_declarations.h"
 #include "kernels/surface/interpolation_lanes.h"
 #include "kernels/surface/surface_lanes.h"

@@ -6,10 +6,8 @@
 // costs more than drawing them (1.3 ns per path with AVX-512, lanes_bench).
 #pragma once
 
-#include "kernels/sampling/chain_lanes.h"
 #include "kernels/sampling/philox_lanes.h"
 #include "kernels/sampling/sampler.h"
-#include "kernels/sampling/sobol_lanes.h"
 #include "kernels/simd/lanes.h"
 
 WAVECREST_SIMD_BEGIN
@@ -41,19 +39,9 @@ WAVECREST_INLINE Uniform4 independentUniform4(const SamplerSettings& sampler, UI
           toUnitInterval(join(bits.d))};
 }
 
-// Not inlined: it would fill the loop of every caller with ten times the code of the other branch.
-inline WAVECREST_NOINLINE Uniform4 dependentUniform4(const SamplerSettings& sampler, UInt path, uint32_t block,
-                                                     Stream stream) {
-  if (sampler.kind == SamplerKind::chain) {
-    const ChainNumbers numbers = chainNumbers(sampler, path, block, stream);
-    const auto unit = [](UInt number) WAVECREST_LAMBDA { return toFloat(number) * Float(0x1p-24f); };
-    return {unit(numbers.a), unit(numbers.b), unit(numbers.c), unit(numbers.d)};
-  }
-  if (block / 4 >= sobolVertices(stream)) return independentUniform4(sampler, path, block, stream);
-  const SobolPoint bits =
-      stream == Stream::light ? sharedSobolBits(sampler, path, block) : sobolBits(sampler, path, block, stream);
-  return {toUnitInterval(bits.a), toUnitInterval(bits.b), toUnitInterval(bits.c), toUnitInterval(bits.d)};
-}
+// Numbers of the other kinds (dependent_numbers.cpp). Not inlined: they would fill the loop of every caller with ten
+// times the code of independent ones.
+Uniform4 dependentUniform4(const SamplerSettings& sampler, UInt path, uint32_t block, Stream stream);
 
 // The sampler's kind is the same for all lanes and calls: the branch is predicted.
 WAVECREST_INLINE Uniform4 uniform4(const SamplerSettings& sampler, UInt path, uint32_t block, Stream stream) {

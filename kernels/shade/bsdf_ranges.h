@@ -9,13 +9,17 @@
 
 WAVECREST_SIMD_BEGIN
 
-// Calls shade(features) with a std::integral_constant: what vertices need that are all diffuse, or may have any BSDF.
+// All that shading a vertex depends on: sets that differ in nothing else share its code.
+constexpr uint32_t kShadedFeatures = kOtherBsdfs | kTextures | kShadingNormals | kNormalMaps;
+
+// Calls shade(features) with a std::integral_constant: what shading needs of vertices that are all diffuse, or may have
+// any BSDF.
 template <uint32_t kFeatures, class Shade>
 WAVECREST_INLINE auto withBsdfs(bool diffuse, const Shade& shade) {
   if constexpr (!onlyDiffuse(kFeatures)) {
-    if (diffuse) return shade(std::integral_constant<uint32_t, kFeatures & ~kOtherBsdfs>());
+    if (diffuse) return shade(std::integral_constant<uint32_t, kFeatures & kShadedFeatures & ~kOtherBsdfs>());
   }
-  return shade(std::integral_constant<uint32_t, kFeatures>());
+  return shade(std::integral_constant<uint32_t, kFeatures & kShadedFeatures>());
 }
 
 // Calls shade(features, begin, end) for the vertices [0, count) of the wave, features as above; begin is a multiple of

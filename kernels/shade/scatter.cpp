@@ -23,7 +23,14 @@ WAVECREST_INLINE typename P::Real specularJacobian(const ShadingLanes<P, kBsdfs>
   return sample.pdfReverse * reciprocal(sample.pdf) * woCosine * cosines * sample.etaRatio * sample.etaRatio;
 }
 
-// Scatters vertices [begin, end), whose BSDFs are of kBsdfs, to `out`; where they end. Both stages share its code.
+// What scatterRange reads of a feature set, beside its BSDFs.
+constexpr uint32_t scatterFeatures(uint32_t features) {
+  const uint32_t asked = kBidirectional | kShadingNormals | kTextures;
+  return (features & asked) | (hasRouletteScale(features) ? uint32_t{kSpecularBsdfs} : 0u);
+}
+
+// Scatters vertices [begin, end), whose BSDFs are of kBsdfs, to `out`; where they end. Both stages share its code, and
+// so do feature sets of which it reads the same.
 template <class P, uint32_t kFeatures, uint32_t kBsdfs>
 WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& context,
                                        Wave<typename P::Storage>& wave, Lobes lobes, size_t begin, size_t end,
@@ -110,7 +117,7 @@ WAVECREST_INLINE void scatterBy(const StageContext<typename P::Storage>& context
                                 Lobes lobes) {
   size_t out = 0;
   forEachBsdfRange<kFeatures>(wave, wave.rays.size, [&](auto bsdfs, size_t begin, size_t end) WAVECREST_LAMBDA {
-    out = scatterRange<P, kFeatures, decltype(bsdfs)::value>(context, wave, lobes, begin, end, out);
+    out = scatterRange<P, scatterFeatures(kFeatures), decltype(bsdfs)::value>(context, wave, lobes, begin, end, out);
   });
   wave.rays.size = wave.paths.size = out;
 }

@@ -116,13 +116,17 @@ class Times(unittest.TestCase):
                 self.assertEqual(self.said(tally.end, "a", 100, "done"), [f"=== a: done in 10 s, {cores} cores busy"])
 
     def test_the_slowest_tests_come_first_and_the_others_not_at_all(self):
-        cases = "".join(f'<testcase name="case {i}" time="{i / 2}"/>' for i in range(30))
+        cases = "".join(f'<testcase name="case {i}" time="{i / 2}"/>' for i in range(50))
+        batch = '<testcase classname="Suite" name="case" time="24.3"/>'
         with tempfile.TemporaryDirectory(prefix="wavecrest_run_checks_") as folder:
             report = pathlib.Path(folder) / "junit.xml"
             report.write_text(f"<testsuite>{cases}</testsuite>")
+            (report.parent / "batches").mkdir()
+            (report.parent / "batches" / "a.batch0.xml").write_text(f"<testsuites>{batch}</testsuites>")
             lines = self.said(run_checks.print_slowest, report)
-        self.assertEqual(lines[0].split(), ["14.5", "s", "case", "29"])
-        self.assertEqual(lines[-1].split(), ["5.0", "s", "case", "10"])
+        self.assertEqual(lines[0].split(), ["24.5", "s", "case", "49"])
+        self.assertEqual(lines[1].split(), ["24.3", "s", "Suite.case"])
+        self.assertEqual(lines[-1].split(), ["5.5", "s", "case", "11"])
 
 
 if __name__ == "__main__":
