@@ -19,6 +19,10 @@ namespace {
 // than about as much. Even at a ratio of 1 the boundary differs from none: its facets still shadow each other.
 constexpr double kIndexMatched = 1e-4;
 
+// Where a colour of a plastic or a phong is textured, the least share of the samples for either lobe. A mean near 0
+// hides bright texels, whose lobe a share by the means would draw too rarely for numbers of 24 bits.
+constexpr float kLeastShare = 1.0f / 16;
+
 // Mitsuba 0.6 scales the colours of a phong whose sum is above 1 in a channel down to this sum.
 constexpr double kPhongEnergy = 0.99;
 
@@ -95,9 +99,7 @@ class Compiler {
     assignTextured(record_.alpha, record_.alphaTexture, plastic.alpha);
     if (plastic.nonlinear) record_.flags |= kNonlinear;
     // How often the specular lobe is sampled.
-    const double diffuse = average(mean(plastic.diffuseReflectance, scene_));
-    const double specular = average(mean(plastic.specularReflectance, scene_));
-    record_.specularPick = specularShare(specular, diffuse);
+    record_.specularPick = specularShare(plastic.specularReflectance, plastic.diffuseReflectance, average);
     // What the boundary reflects of diffuse light from inside, and the table of what it lets pass.
     if (isSmooth(plastic)) {
       record_.internalDiffuse = static_cast<float>(diffuseFresnelReflectance(1 / eta));
@@ -120,14 +122,21 @@ class Compiler {
       for (float& channel : record_.reflectance) channel *= scale;
       for (float& channel : record_.specular) channel *= scale;
     }
-    record_.specularPick = specularShare(luminance(mean(phong.specularReflectance, scene_)),
-                                         luminance(mean(phong.diffuseReflectance, scene_)));
+    const auto luminanceOf = [](const Rgb& colour) { return luminance(colour); };
+    record_.specularPick = specularShare(phong.specularReflectance, phong.diffuseReflectance, luminanceOf);
   }
 
  private:
-  // Share of the samples that the specular lobe gets. That of a black material does not matter.
-  static float specularShare(double specular, double diffuse) {
-    return specular + diffuse > 0 ? static_cast<float>(specular / (specular + diffuse)) : 0.5f;
+  // Share of the samples that the specular lobe gets: that of its mean colour, a number by `toNumber`, in the sum of
+  // both. The share of a black material does not matter.
+  template <class ToNumber>
+  float specularShare(const TexturedRgb& specular, const TexturedRgb& diffuse, const ToNumber& toNumber) const {
+    const double ofSpecular = toNumber(mean(specular, scene_)), sum = ofSpecular + toNumber(mean(diffuse, scene_));
+    const float share = sum > 0 ? static_cast<float>(ofSpecular / sum) : 0.5f;
+    const bool anyTexture = specular.texture != kNone || diffuse.texture != kNone;
+    const auto isBlack = [&](const TexturedRgb& colour) { return !(std::ranges::max(greatest(colour, scene_)) > 0); };
+    if (!anyTexture || isBlack(specular) || isBlack(diffuse)) return share;
+    return std::clamp(share, kLeastShare, 1 - kLeastShare);
   }
 
   MaterialRecord& record_;

@@ -7,12 +7,6 @@
 namespace wavecrest {
 namespace {
 
-// The fourth texel of the cells of a baked attribute lies outside of their triangles (engine/load/mesh_attributes.h).
-bool isOutside(const BitmapTexture& texture, size_t pixel) {
-  return texture.attribute != nullptr && pixel % texture.bitmap->width % 2 == 1 &&
-         pixel / texture.bitmap->width % 2 == 1;
-}
-
 Rgb greatest(const Texture& texture) {
   Rgb most{};
   const auto add = [&](size_t channel, double value) { most[channel] = std::max(most[channel], value); };

@@ -5,10 +5,11 @@
 
 namespace wavecrest {
 
-// The constant, or the mean over the texels of a bitmap or over a checkerboard's two colours.
+// The constant, or the mean over the texels of a bitmap or over a checkerboard's two colours. Mean and greatest value
+// of a baked attribute are those of its triangles' corners.
 Rgb mean(const TexturedRgb& colour, const Scene& scene);
 
-// The constant, or the greatest value of each channel, at least 0. That of a baked attribute is within its triangles.
+// The constant, or the greatest value of each channel, at least 0.
 Rgb greatest(const TexturedRgb& colour, const Scene& scene);
 
 }  // namespace wavecrest

@@ -99,7 +99,7 @@ CylinderFrame frameOf(const Matrix4& toWorld, const Double3& p0, const Double3& 
 
 // Assumes that the image is a circular cylinder, which readCylinder checks.
 Cylinder placeCylinder(const Matrix4& toWorld, const Double3& p0, const Double3& p1, double radius, bool flipNormals) {
-  // Normals point away from the axis in the mirror, too.
+  // Normals point away from the axis in the mirror, too, as in Mitsuba 3.
   const CylinderFrame frame = frameOf(toWorld, p0, p1);
   return {.p0 = transformPoint(toWorld, p0),
           .p1 = transformPoint(toWorld, p1),
@@ -125,7 +125,9 @@ Geometry readCylinder(LoadContext& context, Parameters& parameters, const Matrix
     context.unsupported(parameters.locationOf("to_world"),
                         "cylinder with an elliptic or slanted section; expected a uniform scale around its axis");
   }
-  return placeCylinder(toWorld, p0, p1, radius, parameters.boolean("flip_normals", false));
+  // In files of 0.4 to 0.6 normals of a mirrored cylinder point inward.
+  const bool inward = parameters.object().legacy && determinant3(toWorld) < 0;
+  return placeCylinder(toWorld, p0, p1, radius, inward != parameters.boolean("flip_normals", false));
 }
 
 // Four vertices per face, so that each has its own texture coordinates; faces in Mitsuba's order -y +y +x +z -x -z.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/load/bmp.h"
@@ -74,8 +76,7 @@ void clearNonFinite(LoadContext& context, Bitmap& bitmap, const std::filesystem:
 
 }  // namespace
 
-std::shared_ptr<const Bitmap> readBitmap(LoadContext& context, const std::filesystem::path& path, bool raw,
-                                         const SourceLocation& where) {
+BitmapFile readBitmap(LoadContext& context, const std::filesystem::path& path, bool raw, const SourceLocation& where) {
   const std::string key = (raw ? "raw:" : "linear:") + path.string();
   if (const auto known = context.bitmaps.find(key); known != context.bitmaps.end()) return known->second;
   ImageFile file = readImageFile(path, where);
@@ -83,17 +84,18 @@ std::shared_ptr<const Bitmap> readBitmap(LoadContext& context, const std::filesy
     context.note(where, "EXPOSURE, COLORCORR or PRIMARIES of a Radiance picture",
                  "left out, as in Mitsuba: pixels are taken as stored");
   }
+  if (file.otherGamma && !raw) context.note(where, "gAMA of a PNG", "left out: the sRGB curve is used");
   auto bitmap = std::make_shared<Bitmap>();
   bitmap->width = file.image.width;
   bitmap->height = file.image.height;
   bitmap->channels = file.image.channels;
   bitmap->pixels = std::move(file.image.pixels);
   clearNonFinite(context, *bitmap, path, where);
-  if (file.encoding != Encoding::linear && !raw) {
+  const bool encoded = file.encoding != Encoding::linear;
+  if (encoded && !raw) {
     for (float& value : bitmap->pixels) value = static_cast<float>(srgbDecode(value));
   }
-  context.bitmaps.emplace(key, bitmap);
-  return bitmap;
+  return context.bitmaps.emplace(key, BitmapFile{.bitmap = std::move(bitmap), .encoded = encoded}).first->second;
 }
 
 }  // namespace wavecrest

@@ -276,69 +276,6 @@ void readWard(LoadContext& context, Parameters& parameters, Material& material) 
                         .exponent = exponent};
 }
 
-namespace {
-
-// The parameters that `principled` and `principledthin` share.
-Principled readAnyPrincipled(LoadContext& context, Parameters& parameters) {
-  const auto number = [&](const char* name, double fallback) {
-    return readTexturedFloat(context, parameters, name, fallback);
-  };
-  Principled principled;
-  principled.baseColor = readTexturedRgb(context, parameters, "base_color", 0.5);
-  principled.roughness = number("roughness", 0.5);
-  principled.anisotropic = number("anisotropic", 0);
-  principled.specTrans = number("spec_trans", 0);
-  principled.specTint = number("spec_tint", 0);
-  principled.sheen = number("sheen", 0);
-  principled.sheenTint = number("sheen_tint", 0);
-  principled.flatness = number("flatness", 0);
-  return principled;
-}
-
-}  // namespace
-
-void readPrincipled(LoadContext& context, Parameters& parameters, Material& material) {
-  Principled principled = readAnyPrincipled(context, parameters);
-  principled.metallic = readTexturedFloat(context, parameters, "metallic", 0);
-  principled.clearcoat = readTexturedFloat(context, parameters, "clearcoat", 0);
-  principled.clearcoatGloss = readTexturedFloat(context, parameters, "clearcoat_gloss", 0);
-  const bool transmits = principled.specTrans.texture != kNone || principled.specTrans.value != 0;
-  // The index of refraction, given as `eta` or by `specular`. It must not be 1 if light is transmitted.
-  if (parameters.has("eta") && parameters.has("specular")) {
-    throw LoadError(parameters.locationOf("specular"), "specular stands beside eta; expected one of the two");
-  }
-  if (parameters.has("eta")) {
-    principled.eta = parameters.positiveReal("eta", 1.5);
-    if (transmits && principled.eta == 1) principled.eta = 1.001;  // as Mitsuba does: nothing bends without it
-  } else {
-    double specular = parameters.real("specular", 0.5);
-    if (!(specular >= 0 && specular <= 1)) {
-      throw LoadError(parameters.locationOf("specular"), "specular is outside of its range; expected 0 to 1");
-    }
-    if (transmits && specular == 0) specular = 1e-3;
-    // The solution of ((eta - 1) / (eta + 1))^2 = 0.08 specular. The left side is the reflectance at normal incidence.
-    principled.eta = 2 / (1 - std::sqrt(0.08 * specular)) - 1;
-  }
-  // These only guide sampling.
-  parameters.ignore({"diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"});
-  material.kind = principled;
-}
-
-void readPrincipledThin(LoadContext& context, Parameters& parameters, Material& material) {
-  Principled principled = readAnyPrincipled(context, parameters);
-  principled.thin = true;
-  principled.diffTrans = readTexturedFloat(context, parameters, "diff_trans", 0);
-  const TexturedFloat eta = readTexturedFloat(context, parameters, "eta", 1.5);
-  if (eta.texture != kNone || !(eta.value > 0)) {
-    throw LoadError(parameters.locationOf("eta"), "eta is not a constant above 0; expected one number");
-  }
-  principled.eta = eta.value;
-  // These only guide sampling.
-  parameters.ignore({"diffuse_reflectance_sampling_rate", "specular_reflectance_sampling_rate",
-                     "specular_transmittance_sampling_rate", "diffuse_transmittance_sampling_rate"});
-  material.kind = principled;
-}
-
 // The adapters below read the nested BSDF into `material`, and then set what they add to it.
 void readTwoSided(LoadContext& context, Parameters& parameters, Material& material) {
   const std::vector<const XmlElement*> sides = parameters.objects("bsdf");
@@ -356,6 +293,7 @@ void readTwoSided(LoadContext& context, Parameters& parameters, Material& materi
     throw LoadError(parameters.location(), "twosided around a BSDF that transmits; expected one that only reflects");
   }
   material.twoSided = true;
+  material.normalMapping.aroundTwoSided = false;  // the map is within this one, also where it is around another
 }
 
 // A surface that does not change light: any BSDF with an opacity of 0.

@@ -16,6 +16,7 @@ void readRoughPlastic(LoadContext&, Parameters&, Material&);
 void readPhong(LoadContext&, Parameters&, Material&);
 void readRoughDiffuse(LoadContext&, Parameters&, Material&);  // of Mitsuba 0.6, not supported: names the nearest
 void readWard(LoadContext&, Parameters&, Material&);          // likewise
+// In principled_bsdfs.cpp.
 void readPrincipled(LoadContext&, Parameters&, Material&);
 void readPrincipledThin(LoadContext&, Parameters&, Material&);
 // Sums of others (blends.cpp).

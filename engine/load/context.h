@@ -14,6 +14,12 @@ namespace wavecrest {
 
 class MeshesAhead;
 
+// An image file as read by readBitmap.
+struct BitmapFile {
+  std::shared_ptr<const Bitmap> bitmap;
+  bool encoded = false;  // the file has 8 or 16 bits, of the sRGB curve, whether or not that is undone
+};
+
 struct LoadContext {
   const LoadOptions& options;
   const XmlDocument& document;
@@ -24,8 +30,8 @@ struct LoadContext {
   std::map<const XmlElement*, uint32_t> textures{};
   // What stands in for a texture where a number is asked for, by the texture and by asMitsuba3 (scalarTextureOf).
   std::map<std::pair<uint32_t, bool>, uint32_t> scalarTextures{};
-  std::set<const XmlElement*> reading{};                           // objects being read, to find reference cycles
-  std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};  // by path and colour treatment
+  std::set<const XmlElement*> reading{};        // objects being read, to find reference cycles
+  std::map<std::string, BitmapFile> bitmaps{};  // by path and colour treatment
   std::map<std::string, std::shared_ptr<const std::vector<char>>> meshArchives{};  // files of many meshes, by path
   std::shared_ptr<MeshesAhead> meshesAhead{};
   std::set<const XmlElement*> areaLights{};         // that shapes have

@@ -223,9 +223,10 @@ EmitterKind readEnvmap(LoadContext& context, Parameters& parameters) {
   const std::string filename = parameters.requiredString("filename");
   const SourceLocation where = parameters.locationOf("filename");
   // 8- and 16-bit images are decoded to linear light (raw is false).
-  EnvmapEmitter light{.bitmap = readBitmap(context, context.resolvePath(filename, parameters.object()), false, where),
-                      .scale = parameters.real("scale", 1),
-                      .toWorld = readToWorld(parameters)};
+  EnvmapEmitter light{
+      .bitmap = readBitmap(context, context.resolvePath(filename, parameters.object()), false, where).bitmap,
+      .scale = parameters.real("scale", 1),
+      .toWorld = readToWorld(parameters)};
   parameters.ignore({"mis_compensation"});  // guides sampling only
   if (!(light.scale >= 0)) {
     throw LoadError(parameters.locationOf("scale"), "scale of the environment is negative; expected 0 or more");

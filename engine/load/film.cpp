@@ -1,6 +1,8 @@
 #include "engine/load/film.h"
 
 #include <algorithm>
+#include <limits>
+#include <string>
 
 #include "engine/load/plugins.h"
 #include "engine/load/values.h"
@@ -11,13 +13,14 @@ namespace {
 
 constexpr int64_t kLargestSide = 32768;
 constexpr int64_t kMostPixels = int64_t{1} << 28;
-constexpr double kWidestFilter = 32;  // pixels
+constexpr uint32_t kMostAcross = 65535;  // a pixel is kept as y << 16 | x
+constexpr double kWidestFilter = 32;     // pixels
 
 // `stddev` is in pixels.
 void setGaussian(FilmSettings& film, double stddev) {
   film.filter = ReconstructionFilter::gaussian;
   film.gaussianStddev = stddev;
-  film.filterRadius = 4 * stddev;  // where Mitsuba cuts it off
+  film.filterRadius = 4 * stddev;  // only bounds the size: samples are cut at 4.5 deviations
 }
 
 // Reads the crop window in pixels. It stays 0 x 0, which stands for the whole film, if the file gives none.
@@ -110,7 +113,9 @@ void readFilm(LoadContext& context, const XmlElement* element) {
   if (context.options.filmSize) {
     const double aspect = static_cast<double>(film.width) / film.height;
     const auto [width, height] = *context.options.filmSize;
-    const auto rounded = [](double side) { return static_cast<uint32_t>(std::max(side + 0.5, 1.0)); };
+    const auto rounded = [](double side) {
+      return static_cast<uint32_t>(std::clamp(side + 0.5, 1.0, double{std::numeric_limits<uint32_t>::max()}));
+    };
     film.width = width != 0 ? width : rounded(height * aspect);
     film.height = height != 0 ? height : rounded(width / aspect);
     if (element && film.isCropped()) {
@@ -119,10 +124,13 @@ void readFilm(LoadContext& context, const XmlElement* element) {
     film.cropX = film.cropY = film.cropWidth = film.cropHeight = 0;
   }
   // Check the final size.
-  if (film.width == 0 || film.height == 0 || int64_t{film.width} * film.height > kMostPixels) {
+  const bool isEmpty = film.width == 0 || film.height == 0;
+  const bool isTooLong = film.width > kMostAcross || film.height > kMostAcross;
+  if (isEmpty || isTooLong || int64_t{film.width} * film.height > kMostPixels) {
     throw LoadError(element ? element->location() : context.document.scene.location(),
                     "film of " + std::to_string(film.width) + " x " + std::to_string(film.height) +
-                        " pixels; expected 1 to 2^28 pixels");
+                        " pixels; expected 1 to 2^28 pixels" +
+                        (isTooLong ? ", and sides up to " + std::to_string(kMostAcross) : ""));
   }
 }
 

@@ -103,7 +103,7 @@ void readIntegrator(LoadContext& context, const XmlElement& element) {
   const std::string_view type = element.get("type");
   const int64_t fallback = integratorOf(type).maxDepth;
   // These have two edges, whatever they state.
-  const bool isFixed = type == "direct_projective" || type == "direct_reparam";
+  const bool isFixed = type == "direct" || type == "direct_projective" || type == "direct_reparam";
   if (isFixed) parameters.leaveOut({"max_depth"}, "left out: paths of this integrator have two edges");
   defaults.maxDepth = static_cast<int>(isFixed ? fallback : parameters.integer("max_depth", fallback, -1, kMost));
   if (defaults.maxDepth == 0) {

@@ -34,7 +34,7 @@ uint64_t readCount(Source& source, const PlyProperty& property) {
 }
 
 // A row holds the properties of one vertex. Slots 0 to 2 are the position, 3 to 5 the normal, 6 and 7 the texture
-// coordinates, and 9 to 11 the attribute. All properties that are not needed share slot 8.
+// coordinates, and 9 to 11 the attribute. All properties that are not needed have slot 8, which is not read.
 constexpr int kNormalSlot = 3, kUvSlot = 6, kNoSlot = 8, kAttributeSlot = 9, kRowSlots = 12;
 
 bool isFinite(const float* values, int count) {
@@ -118,15 +118,15 @@ void readVertices(Source& source, const PlyElement& element, const SourceLocatio
   soup.positions.reserve(element.count);
   if (hasNormals) soup.normals.reserve(element.count);
   if (hasUvs) soup.uvs.reserve(element.count);
-  // Read the rows. A property that is a list is skipped.
+  // Read the rows. Properties that are not needed are skipped; all lists are among them.
   float row[kRowSlots] = {};
   for (uint64_t i = 0; i < element.count; ++i) {
     for (size_t j = 0; j < slots.size(); ++j) {
       const PlyProperty& property = element.properties[j];
-      if (!property.isList) {
+      if (slots[j] != kNoSlot) {
         row[slots[j]] = source.real(property.type);
       } else {
-        source.skip(property.type, readCount(source, property));
+        source.skip(property.type, property.isList ? readCount(source, property) : 1);
       }
     }
     if (!isFinite(row, 3)) source.fail("vertex " + std::to_string(i) + " is not finite; expected finite coordinates");

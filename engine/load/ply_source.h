@@ -19,10 +19,11 @@ class AsciiSource {
  public:
   explicit AsciiSource(const TextScanner& scanner) : scanner_(scanner) {}
 
-  float real(PlyType) { return scanner_.readFloat("a number of the announced element"); }
+  float real(PlyType) { return scanner_.readFloat(kNumber); }
   int64_t integer(PlyType) { return scanner_.readInteger("a whole number"); }
-  void skip(PlyType type, uint64_t count) {
-    for (uint64_t i = 0; i < count; ++i) real(type);
+  // Skipped values may be anything, also not finite.
+  void skip(PlyType, uint64_t count) {
+    for (uint64_t i = 0; i < count; ++i) scanner_.skipToken(kNumber);
   }
   // Whether `count` more values can follow at all: at least a digit and a separator each.
   bool canHold(PlyType, uint64_t count) const { return count <= scanner_.bytesLeft() / 2; }
@@ -33,6 +34,8 @@ class AsciiSource {
   [[noreturn]] void fail(const std::string& message) const { scanner_.fail(message); }
 
  private:
+  static constexpr const char* kNumber = "a number of the announced element";
+
   TextScanner scanner_;
 };
 

@@ -109,8 +109,12 @@ EmitterKind readSunsky(LoadContext& context, Parameters& parameters) {
   if (sky.sunAperture >= 180) {
     throw LoadError(parameters.locationOf("sun_aperture"), "sun_aperture is not below 180; expected degrees");
   }
+  // Versions 0.5 and 0.6 scale it.
+  const bool scaled = legacy && parameters.has("sun_radius_scale");
+  if (scaled) sky.sunAperture = std::min(sky.sunAperture * readScale(parameters, "sun_radius_scale", 1), 90.0);
   if (sky.sunAperture < kSmallestAperture) {
-    context.note(parameters.locationOf("sun_aperture"), "sun_aperture below 0.02 degrees", "0.02 is used");
+    context.note(parameters.locationOf(scaled ? "sun_radius_scale" : "sun_aperture"), "sun_aperture below 0.02 degrees",
+                 "0.02 is used");
     sky.sunAperture = kSmallestAperture;
   }
   if (parameters.boolean("complex_sun", false)) {
@@ -119,10 +123,8 @@ EmitterKind readSunsky(LoadContext& context, Parameters& parameters) {
         "the sun's disc is evenly bright, with the irradiance of Mitsuba's plain sun: a sun below 5 degrees is "
         "too bright");
   }
-  // Versions 0.5 and 0.6 give the radius of the sun as a factor, and their zenith is along y.
+  // The zenith of versions 0.5 and 0.6 is along y.
   if (legacy) {
-    const double scaled = kSunAperture * readScale(parameters, "sun_radius_scale", 1);
-    sky.sunAperture = std::clamp(scaled, kSmallestAperture, 90.0);
     for (size_t i = 0; i < 3; ++i) {  // z up instead of y
       const auto row = toWorld[i];
       sky.toWorld[i] = {row[0], 0 - row[2], row[1], row[3]};  // 0 for 0, where -row[2] is -0

@@ -18,6 +18,12 @@ std::string_view TextScanner::token() const {
   return {at_, static_cast<size_t>(p - at_)};
 }
 
+void TextScanner::skipToken(const char* what) {
+  skipSpace();
+  if (at_ == end_) fail(std::string("file ends early; expected ") + what);
+  at_ += token().size();
+}
+
 float TextScanner::readSlowFloat(const char* what) {
   std::string_view text = token();
   at_ += text.size();

@@ -43,6 +43,8 @@ class TextScanner {
 
   float readFloat(const char* what);
   int64_t readInteger(const char* what);
+  // Skips what stands in the place of a number.
+  void skipToken(const char* what);
   size_t bytesLeft() const { return static_cast<size_t>(end_ - at_); }
 
   SourceLocation location() const;

@@ -52,7 +52,7 @@ Wrap readWrap(LoadContext& context, Parameters& parameters, std::string_view par
   if (name == "repeat") return Wrap::repeat;
   if (name == "mirror") return Wrap::mirror;
   if (name == "clamp") return Wrap::clamp;
-  if (name == "zero" || name == "one") {
+  if (name == "zero" || name == "black" || name == "one" || name == "white") {
     context.note(parameters.locationOf(parameter), std::string(parameter) + " " + inQuotes(name), "clamp is used");
     return Wrap::clamp;
   }
@@ -70,19 +70,6 @@ Wrap readWrapOfAxes(LoadContext& context, Parameters& parameters) {
                         "wrap_mode_u and wrap_mode_v differ; expected the same for both");
   }
   return u;
-}
-
-// Whether the file's numbers are light already. Version 0.6 says so by a gamma of 1, and asks for the file's by -1.
-bool readRaw(LoadContext& context, Parameters& parameters) {
-  bool raw = parameters.boolean("raw", false);
-  if (parameters.has("gamma")) {
-    const double gamma = parameters.real("gamma", -1);
-    if (gamma == 1) raw = true;
-    if (gamma > 0 && gamma != 1) {
-      context.note(parameters.locationOf("gamma"), "gamma of a bitmap", "the sRGB curve is used");
-    }
-  }
-  return raw;
 }
 
 // A channel of a bitmap of three channels, as a bitmap of one channel.
@@ -140,13 +127,20 @@ Texture constantTexture(const Rgb& value) {
 Texture readBitmapTexture(LoadContext& context, Parameters& parameters) {
   BitmapTexture texture{
       .bitmap = nullptr, .filter = readFilter(context, parameters), .wrap = readWrapOfAxes(context, parameters)};
-  const bool raw = readRaw(context, parameters);
+  // Whether the file's numbers are light already. In version 0.6 a gamma of 1 says so, 0 leaves it to the file, and -1
+  // stands for the sRGB curve.
+  const double gamma = parameters.real("gamma", 0);
+  const bool raw = parameters.boolean("raw", false) || gamma == 1;
   parameters.ignore({"format", "accel", "cache"});  // how Mitsuba stores it
   // Read the file, and take one channel of it if asked.
   const std::string filename = parameters.requiredString("filename");
-  texture.bitmap =
+  const BitmapFile file =
       readBitmap(context, context.resolvePath(filename, parameters.object()), raw, parameters.locationOf("filename"));
-  texture.bitmap = readChannel(context, parameters, texture.bitmap);
+  if (gamma != 0 && gamma != 1 && !(gamma == -1 && file.encoded)) {
+    context.note(parameters.locationOf("gamma"), "gamma of a bitmap",
+                 "left out: 8- and 16-bit files have the sRGB curve, others none");
+  }
+  texture.bitmap = readChannel(context, parameters, file.bitmap);
   return {.kind = std::move(texture), .toUv = readToUv(parameters)};
 }
 

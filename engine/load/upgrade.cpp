@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
+#include <string_view>
 
 namespace wavecrest {
 
@@ -58,8 +59,9 @@ void upgradeChildren(XmlElement& element) {
     return true;
   });
   for (std::string& own : scale) own = own.empty() ? bothScales : own;
-  // The reflectance of `diffuse` had a longer name.
-  if (element.tag == "bsdf" && element.get("type") == "diffuse") {
+  // The reflectance of `diffuse` and `roughdiffuse` had a longer name.
+  const std::string_view type = element.get("type");
+  if (element.tag == "bsdf" && (type == "diffuse" || type == "roughdiffuse")) {
     for (XmlElement& child : element.children) {
       for (auto& [name, value] : child.attributes) {
         if (name == "name" && value == "diffuse_reflectance") value = "reflectance";

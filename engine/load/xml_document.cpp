@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <optional>
 #include <pugixml.hpp>
@@ -26,12 +27,25 @@ constexpr std::array<std::string_view, 14> kObjectTags = {"scene",  "bsdf",    "
                                                           "medium", "phase",   "rfilter", "sensor",  "sampler",
                                                           "shape",  "texture", "volume",  "spectrum"};
 
-// Byte offset -> line number of one file.
+// Byte offset -> line number of one file. pugixml converts files of other encodings to UTF-8, and its offsets count
+// bytes of that.
 class LineIndex {
  public:
-  explicit LineIndex(const std::vector<char>& text) {
-    for (size_t i = 0; i < text.size(); ++i) {
-      if (text[i] == '\n') newlines_.push_back(i);
+  LineIndex(const std::vector<char>& text, pugi::xml_encoding encoding) {
+    const bool isUtf16 = encoding == pugi::encoding_utf16_le || encoding == pugi::encoding_utf16_be;
+    const bool isUtf32 = encoding == pugi::encoding_utf32_le || encoding == pugi::encoding_utf32_be;
+    const bool isBigEndian = encoding == pugi::encoding_utf16_be || encoding == pugi::encoding_utf32_be;
+    const bool isConverted = isUtf16 || isUtf32 || encoding == pugi::encoding_latin1;
+    const size_t unitBytes = isUtf32 ? 4 : isUtf16 ? 2 : 1;
+    size_t offset = 0;
+    for (size_t i = 0; i + unitBytes <= text.size(); i += unitBytes) {
+      uint32_t unit = 0;
+      for (size_t k = 0; k < unitBytes; ++k) {
+        const uint32_t byte = static_cast<unsigned char>(text[i + (isBigEndian ? k : unitBytes - 1 - k)]);
+        unit = unit << 8 | byte;
+      }
+      if (unit == '\n') newlines_.push_back(offset);
+      offset += isConverted ? bytesInUtf8(unit) : 1;
     }
   }
   // The 1-based line; 0 for a negative offset, by which pugixml says that it knows none.
@@ -42,6 +56,14 @@ class LineIndex {
   }
 
  private:
+  // Bytes of a code point in UTF-8. A surrogate of UTF-16 is half of a code point of four.
+  static size_t bytesInUtf8(uint32_t unit) {
+    if (unit < 0x80) return 1;
+    const bool isSurrogate = unit >= 0xd800 && unit < 0xe000;
+    if (unit < 0x800 || isSurrogate) return 2;
+    return unit < 0x10000 ? 3 : 4;
+  }
+
   std::vector<size_t> newlines_;
 };
 
@@ -100,12 +122,11 @@ XmlElement XmlReader::readFile(const std::filesystem::path& path, const SourceLo
     throw LoadError(namedAt, "scene and its includes exceed 32 MiB of XML; expected a smaller description");
   }
   document_.files.push_back(path.string());
-  const LineIndex lines(text);
-  OpenFile file{.path = path, .name = &document_.files.back(), .lines = &lines, .legacy = false};
-
   // Parse the XML.
   pugi::xml_document xml;
   const pugi::xml_parse_result parsed = xml.load_buffer(text.data(), text.size());
+  const LineIndex lines(text, parsed.encoding);
+  OpenFile file{.path = path, .name = &document_.files.back(), .lines = &lines, .legacy = false};
   if (!parsed) {
     throw LoadError({*file.name, std::max(1, lines.lineOf(parsed.offset))},
                     std::string("malformed XML: ") + parsed.description() + "; expected a Mitsuba scene file");

@@ -108,7 +108,7 @@ struct PrincipledBsdf {
     }
   };
 
-  // 2 |v_z| / G1 of the clear coat, whose shadowing is that of GGX of roughness 1/4.
+  // G1 of the clear coat, which is that of GGX of roughness 1/4.
   template <class P>
   static WAVECREST_INLINE typename P::Real coatShadowing(Vec3<typename P::Real> v) {
     using Real = typename P::Real;

@@ -42,6 +42,7 @@ struct ImageFile {
   // Of a Radiance file: what its channels have been multiplied by, if that is above 0.
   std::array<double, 3> exposure{1, 1, 1};
   std::string primaries{};  // of a Radiance file: those that it names, if they are neither Rec. 709's nor Radiance's
+  bool otherGamma = false;  // of a PNG: it names another gamma than that of sRGB, and not sRGB itself
 };
 
 // An image file that cannot be read or written. The text is complete: "FILE: what is wrong; what was expected".

@@ -3,6 +3,7 @@
 #include <png.h>
 
 #include <csetjmp>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -49,6 +50,15 @@ void takeBytes(png_structp png, png_bytep out, size_t count) {
   std::memcpy(out, reader->cursor, count);
   reader->cursor += count;
   reader->left -= count;
+}
+
+// Whether the file names another gamma than sRGB's, by more than 1 %. An sRGB chunk takes precedence.
+bool hasOtherGamma(const PngReader& reader) {
+  constexpr png_fixed_point kSrgbGamma = 45455;  // 1 / 2.2 times 100000
+  png_fixed_point gamma = 0;
+  if (png_get_valid(reader.png, reader.info, PNG_INFO_sRGB) != 0) return false;
+  if (png_get_gAMA_fixed(reader.png, reader.info, &gamma) == 0) return false;
+  return std::abs(gamma - kSrgbGamma) > kSrgbGamma / 100;
 }
 
 // Header and the conversion to three channels of 8 or 16 bits. False: reader.message tells why.
@@ -143,6 +153,7 @@ ImageFile decodePng(const std::string& path, Bytes bytes) {
   if (!readRows(reader, rows.data())) fail();
 
   ImageFile file{{width, height, 3, {}}, deep ? Encoding::srgb16 : Encoding::srgb8, {}};
+  file.otherGamma = hasOtherGamma(reader);
   file.image.pixels.resize(size_t{width} * height * 3);
   // Codes become values in 0..1. Those of 16 bits have their high byte first.
   for (size_t i = 0; i < file.image.pixels.size(); ++i) {

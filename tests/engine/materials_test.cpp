@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "engine/scene/scene_error.h"
 #include "tests/engine/test_scenes.h"
@@ -49,6 +51,35 @@ TEST(Materials, bakedColoursCountWithinTheirTriangles) {
       EXPECT_THROW(compile(), SceneError);
     }
   }
+}
+
+// Share of the specular lobe in the samples of a plastic.
+float specularPickOf(const Scene& scene, const Plastic& plastic) {
+  Material material;
+  material.kind = plastic;
+  return compileMaterial(material, scene).specularPick;
+}
+
+// By all four texels the mean of the diffuse colour would be 0, and its lobe would have no samples.
+TEST(Materials, bakedColoursHaveTheMeanOfTheirTriangles) {
+  const auto bitmap = std::make_shared<const Bitmap>(
+      Bitmap{.width = 2, .height = 2, .channels = 1, .pixels = {1.0f, 0.0f, 0.0f, -1.0f}});
+  Scene scene;
+  scene.textures.push_back({.kind = BitmapTexture{.bitmap = bitmap, .attribute = bitmap}});
+  EXPECT_FLOAT_EQ(specularPickOf(scene, {.diffuseReflectance = {.texture = 0}}), 0.75f);
+}
+
+TEST(Materials, lobesOfDarkTexturesWithBrightTexelsKeepAShare) {
+  Bitmap spark{.width = 64, .height = 64, .channels = 1, .pixels = std::vector<float>(size_t{64} * 64)};
+  spark.pixels[100] = 1;
+  Scene scene;
+  scene.textures.push_back({.kind = BitmapTexture{.bitmap = std::make_shared<const Bitmap>(std::move(spark))}});
+  const TexturedRgb dark{.texture = 0};
+  EXPECT_FLOAT_EQ(specularPickOf(scene, {.specularReflectance = dark}), 1.0f / 16);
+  EXPECT_FLOAT_EQ(specularPickOf(scene, {.diffuseReflectance = dark}), 15.0f / 16);
+  // A black lobe needs no samples, and constants have Mitsuba's share.
+  EXPECT_EQ(specularPickOf(scene, {.diffuseReflectance = {{0, 0, 0}}, .specularReflectance = dark}), 1.0f);
+  EXPECT_FLOAT_EQ(specularPickOf(scene, {.diffuseReflectance = {{0.01, 0.01, 0.01}}}), 1 / 1.01f);
 }
 
 // As in Mitsuba 0.6, which adds the greatest values of both colours in each channel.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kPoints = TextureEntries::kMost;
 
-// A grey bitmap that repeats.
+// A grey bitmap that repeats, unless record.wrap says otherwise.
 struct GreyBitmap {
   TextureRecord record{};
   std::vector<float> texels;
@@ -29,7 +29,15 @@ struct GreyBitmap {
   }
   float& at(uint32_t x, uint32_t y) { return texels[3 * (size_t{y} * record.width + x)]; }
   double wrapped(double x, double y) const {
-    const auto inside = [](double a, uint32_t size) { return static_cast<size_t>(a - std::floor(a / size) * size); };
+    // A mirrored bitmap goes back after its last texel, which comes twice.
+    const auto inside = [&](double a, uint32_t size) {
+      if (record.wrap == static_cast<uint32_t>(WrapMode::clamp)) {
+        return static_cast<size_t>(std::clamp(a, 0.0, size - 1.0));
+      }
+      const double period = record.wrap == static_cast<uint32_t>(WrapMode::mirror) ? 2.0 * size : size;
+      const double within = a - std::floor(a / period) * period;
+      return static_cast<size_t>(within < size ? within : period - 1 - within);
+    };
     return texels[3 * (inside(y, record.height) * record.width + inside(x, record.width))];
   }
 
@@ -77,14 +85,17 @@ TEST_P(TextureTest, slopesAreThoseOfTheBilinearPatch) {
   for (uint32_t y = 0; y < 5; ++y) {
     for (uint32_t x = 0; x < 7; ++x) bitmap.at(x, y) = uniform(random);
   }
-  for (int round = 0; round < 50; ++round) {
-    const Points points = evaluate(bitmap, random, 3);
-    for (size_t i = 0; i < kPoints; ++i) {
-      const GreyBitmap::Patch want = bitmap.patch(points.u[i], points.v[i]);
-      if (want.edge < 1e-3) continue;  // float may be on the other side
-      ASSERT_NEAR(points.value[i], want.value, 1e-4);
-      ASSERT_NEAR(points.slopeU[i], want.slopeU, 1e-2);
-      ASSERT_NEAR(points.slopeV[i], want.slopeV, 1e-2);
+  for (const WrapMode wrap : {WrapMode::repeat, WrapMode::mirror, WrapMode::clamp}) {
+    bitmap.record.wrap = static_cast<uint32_t>(wrap);
+    for (int round = 0; round < 50; ++round) {
+      const Points points = evaluate(bitmap, random, 3);
+      for (size_t i = 0; i < kPoints; ++i) {
+        const GreyBitmap::Patch want = bitmap.patch(points.u[i], points.v[i]);
+        if (want.edge < 1e-3) continue;  // float may be on the other side
+        ASSERT_NEAR(points.value[i], want.value, 1e-4) << "wrap mode " << bitmap.record.wrap;
+        ASSERT_NEAR(points.slopeU[i], want.slopeU, 1e-2) << "wrap mode " << bitmap.record.wrap;
+        ASSERT_NEAR(points.slopeV[i], want.slopeV, 1e-2) << "wrap mode " << bitmap.record.wrap;
+      }
     }
   }
 }

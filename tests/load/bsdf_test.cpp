@@ -275,6 +275,10 @@ TEST(Bsdf, MapsKnowWhetherTwoSidednessIsAroundThem) {
   const Material around = materialOf(map + R"(<bsdf type="twosided"><bsdf type="diffuse"/></bsdf></bsdf>)");
   EXPECT_TRUE(around.twoSided);
   EXPECT_TRUE(around.normalMapping.aroundTwoSided);
+  const Material both = materialOf(R"(<bsdf type="twosided">)" + map +
+                                   R"(<bsdf type="twosided"><bsdf type="diffuse"/></bsdf></bsdf></bsdf>)");
+  EXPECT_TRUE(both.twoSided);
+  EXPECT_FALSE(both.normalMapping.aroundTwoSided);
 }
 
 TEST(Bsdf, NormalMapTakesItsTexture) {
@@ -323,6 +327,19 @@ TEST(Bsdf, PrincipledDefaultsAndIndex) {
   expectBsdfError(R"(<bsdf type="principled"><float name="eta" value="1.2"/><float name="specular" value="1"/></bsdf>)",
                   "one of the two");
   expectBsdfError(R"(<bsdf type="principledthin"><float name="metallic" value="1"/></bsdf>)", "metallic");
+}
+
+TEST(Bsdf, ParametersOfPrincipledHaveTheirRanges) {
+  const auto bsdf = [](const std::string& type, const std::string& name, const std::string& value) {
+    return "<bsdf type=\"" + type + "\"><float name=\"" + name + "\" value=\"" + value + "\"/></bsdf>";
+  };
+  for (const std::string name : {"anisotropic", "spec_trans", "spec_tint", "sheen", "sheen_tint", "flatness",
+                                 "metallic", "clearcoat", "clearcoat_gloss"}) {
+    EXPECT_NO_THROW(materialOf(bsdf("principled", name, "1"))) << name;
+    expectBsdfError(bsdf("principled", name, "1.5"), name + " is outside of its range; expected 0 to 1");
+  }
+  expectBsdfError(bsdf("principledthin", "diff_trans", "5"), "diff_trans is outside of its range; expected 0 to 2");
+  EXPECT_EQ(kindOf<Principled>(bsdf("principled", "roughness", "1.5")).roughness.value, 1.5);
 }
 
 // ---- blends ---------------------------------------------------------------------------------------------------------

@@ -85,6 +85,9 @@ TEST(Fuzz, TheUndamagedFilesLoad) {
   EXPECT_EQ(materials.shapes.size(), 7u);
   EXPECT_EQ(materials.instances.size(), 2u);
   EXPECT_NO_THROW(compileScene<float>(materials, Accel::automatic));
+  const Scene colors = load(folder, kColorSeed);
+  EXPECT_EQ(colors.shapes.size(), 1u);
+  EXPECT_NO_THROW(compileScene<float>(colors, Accel::automatic));
 }
 
 }  // namespace

@@ -138,6 +138,12 @@ TEST(Ply, TextureCoordinatesAreTheFirstPairThatIsComplete) {
   EXPECT_TRUE(meshWithProperties({"u", "t"}, ".5 .75").uvs.empty());
 }
 
+TEST(Ply, PropertiesThatNothingNeedsMayBeAnything) {
+  const Mesh mesh = meshWithProperties({"quality", "confidence", "u"}, "nan 1e99 -inf");
+  EXPECT_EQ(mesh.positions, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_TRUE(mesh.uvs.empty());
+}
+
 TEST(Ply, FlipTexCoords) {
   const Mesh mesh = meshOfPly(
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "

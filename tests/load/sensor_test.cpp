@@ -180,6 +180,18 @@ TEST(Film, SizeFromOutsideDropsTheCropWindow) {
   EXPECT_TRUE(sceneOf(kTwoByOne, "perspective", {.filmSize = {{64, 32}}}).notes.empty());
 }
 
+// The missing side follows from the aspect ratio of the file.
+TEST(Film, SidesFromOutsideAreBounded) {
+  const auto widthOf = [](uint32_t height, const std::string& side) {
+    const std::string file = R"(<film type="hdrfilm"><integer name="width" value=")" + side +
+                             R"("/><integer name="height" value="1"/></film>)";
+    return sceneOf(file, "perspective", {.filmSize = {{0, height}}}).film.width;
+  };
+  EXPECT_EQ(widthOf(2, "32767"), 65534u);
+  EXPECT_THROW(widthOf(2, "32768"), LoadError);
+  EXPECT_THROW(widthOf(3, "32768"), LoadError);
+}
+
 TEST(Film, MistakesAreErrors) {
   expectSensorError(R"(<film type="specfilm"/>)", "not supported");
   expectSensorError(R"(<film type="hdrfilm"><integer name="width" value="0"/></film>)", "\"width\" is 0; expected 1");
@@ -242,11 +254,13 @@ TEST(Integrator, DepthDefaultsToThatOfItsType) {
   }
   EXPECT_EQ(depthOf("direct_projective"), 2);
   EXPECT_EQ(depthOf("direct_reparam"), 2);
-  const Scene stated =
-      loadBody(R"(<integrator type="direct_projective"><integer name="max_depth" value="8"/></integrator>)");
-  EXPECT_EQ(stated.defaults.maxDepth, 2);
-  ASSERT_EQ(stated.notes.size(), 1u);
-  EXPECT_NE(stated.notes[0].what.find("max_depth"), std::string::npos);
+  for (const std::string type : {"direct", "direct_projective", "direct_reparam"}) {
+    const Scene stated =
+        loadBody("<integrator type=\"" + type + "\"><integer name=\"max_depth\" value=\"8\"/></integrator>");
+    EXPECT_EQ(stated.defaults.maxDepth, 2) << type;
+    ASSERT_EQ(stated.notes.size(), 1u) << type;
+    EXPECT_NE(stated.notes[0].what.find("max_depth"), std::string::npos);
+  }
   EXPECT_EQ(depthOf("vpl"), 5);
   EXPECT_EQ(depthOf("ptracer"), -1);
   EXPECT_EQ(loadBody(R"(<integrator type="prb"><integer name="max_depth" value="9"/></integrator>)").defaults.maxDepth,

@@ -153,6 +153,18 @@ TEST(Cylinder, IsItsOwnMirrorImage) {
   EXPECT_TRUE(shapeOf<Cylinder>("cylinder", std::string(kFlip) + std::string(kMirror)).flipNormals);
 }
 
+// Mitsuba 0.6 takes the cross product of the two tangents as the normal.
+TEST(Cylinder, OfOldFilesFacesInwardInTheMirror) {
+  const auto isFlipped = [](const std::string& content) {
+    const std::string shape = "<shape type=\"cylinder\">" + content + "</shape>";
+    const Scene scene = load(sceneXml(shape + std::string(kSensor), "0.6.0"));
+    return std::get<Cylinder>(scene.shapes.at(0).kind).flipNormals;
+  };
+  EXPECT_FALSE(isFlipped(""));
+  EXPECT_TRUE(isFlipped(std::string(kMirror)));
+  EXPECT_FALSE(isFlipped(std::string(kFlip) + std::string(kMirror)));
+}
+
 TEST(Cylinder, MistakesAreErrors) {
   expectShapeError("cylinder", R"(<point name="p1" x="0" y="0" z="0"/>)", "no length");
   expectShapeError("cylinder", R"(<transform name="to_world"><scale x="2"/></transform>)", "elliptic or slanted");

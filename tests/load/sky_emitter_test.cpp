@@ -81,6 +81,23 @@ TEST(Sunsky, OfVersion06HasItsZenithAlongYAndNorthAlongMinusZ) {
   EXPECT_LT(sky.sunDirection[0], -0.5);
 }
 
+TEST(Sunsky, OfVersion06ScalesTheAperture) {
+  const auto sceneOf = [](const std::string& content) {
+    return load(sceneXml(
+        "<emitter type=\"sunsky\">" + content + "</emitter>" + std::string(kSensor) + std::string(kSphere), "0.6.0"));
+  };
+  const auto apertureOf = [](const Scene& scene) {
+    return std::get<SunskyEmitter>(scene.emitters.at(0).kind).sunAperture;
+  };
+  const std::string two = R"(<float name="sunAperture" value="2"/>)";
+  EXPECT_EQ(apertureOf(sceneOf(two)), 2);
+  EXPECT_EQ(apertureOf(sceneOf(two + R"(<float name="sunRadiusScale" value="1.5"/>)")), 3);
+  const Scene point = sceneOf(R"(<float name="sunRadiusScale" value="0"/>)");
+  EXPECT_EQ(apertureOf(point), 0.02);
+  ASSERT_EQ(point.notes.size(), 2u);  // one more says which sky it is
+  EXPECT_EQ(point.notes[0].what, "sun_aperture below 0.02 degrees");
+}
+
 TEST(Sunsky, SunAndSkyOfOneDayAreOneLight) {
   const SunskyEmitter both = skyOf(R"(<emitter type="sky"><float name="scale" value="3"/></emitter>
       <emitter type="sun"><float name="scale" value="5"/></emitter>)",

@@ -61,6 +61,15 @@ TEST(TextScanner, IntegersAndLines) {
   }
 }
 
+TEST(TextScanner, SkipsAnythingInThePlaceOfANumber) {
+  const std::string text = " nan\n7 x\n";
+  TextScanner scanner(text, "file");
+  scanner.skipToken("a number");
+  EXPECT_EQ(scanner.readInteger("an integer"), 7);
+  scanner.skipToken("a number");
+  EXPECT_THROW(scanner.skipToken("a number"), LoadError);
+}
+
 TEST(Quotes, endBetweenCharactersOfUtf8) {
   const std::string most(58, 'a');
   EXPECT_EQ(inQuotes(most + "ü"), "\"" + most + "ü\"");

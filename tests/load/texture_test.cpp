@@ -355,6 +355,73 @@ TEST(Bitmap, OptionsOfVersion06) {
   EXPECT_FLOAT_EQ(texture.bitmap->pixels.at(0), 128 / 255.0f);
 }
 
+TEST(Bitmap, BordersOfOneColourAreClampedWithANote) {
+  const ImageFolder folder;
+  for (const std::string mode : {"zero", "black", "one", "white"}) {
+    const Scene scene = loadBody(folder, texturedSphere(R"(<texture name="reflectance" type="bitmap">
+        <string name="filename" value="grey.png"/><string name="wrap_mode" value=")" +
+                                                        mode + "\"/></texture>"));
+    EXPECT_EQ(std::get<BitmapTexture>(scene.textures.at(0).kind).wrap, Wrap::clamp) << mode;
+    ASSERT_EQ(scene.notes.size(), 1u) << mode;
+    EXPECT_EQ(scene.notes[0].what, "wrap_mode \"" + mode + "\"");
+  }
+}
+
+// Of a file with a bitmap that has these options.
+std::vector<Note> notesOf(const Folder& folder, const std::string& file, const std::string& options) {
+  return loadBody(folder,
+                  texturedSphere("<texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" value=\"" +
+                                 file + "\"/>" + options + "</texture>"))
+      .notes;
+}
+
+// 0 leaves the curve to the file, 1 stands for none, and -1 for that of sRGB.
+TEST(Bitmap, GammasOfAnotherCurveThanThatOfTheFileAreNoted) {
+  const ImageFolder folder;
+  writeExr((folder.path() / "grey.exr").string(),
+           {.width = 1, .height = 1, .channels = 3, .pixels = {0.5f, 0.5f, 0.5f}});
+  const auto noted = [&](const std::string& file, const std::string& gamma) {
+    const std::vector<Note> notes = notesOf(folder, file, R"(<float name="gamma" value=")" + gamma + "\"/>");
+    for (const Note& note : notes) {
+      EXPECT_EQ(note.what, "gamma of a bitmap");
+      EXPECT_EQ(note.effect, "left out: 8- and 16-bit files have the sRGB curve, others none");
+    }
+    return notes.size();
+  };
+  EXPECT_EQ(noted("grey.exr", "2.2"), 1u);
+  EXPECT_EQ(noted("grey.exr", "-1"), 1u);
+  EXPECT_EQ(noted("grey.exr", "0"), 0u);
+  EXPECT_EQ(noted("grey.exr", "1"), 0u);
+  EXPECT_EQ(noted("grey.png", "2.2"), 1u);
+  EXPECT_EQ(noted("grey.png", "-1"), 0u);
+  EXPECT_EQ(noted("grey.png", "0"), 0u);
+}
+
+// One grey pixel, with a gAMA chunk in place of the chunk sRGB. gamma: times 100000.
+std::string pngOfGamma(uint32_t gamma) {
+  const uint8_t grey[] = {128, 128, 128};
+  const std::vector<unsigned char> bytes = encodePng("grey.png", 1, 1, grey);
+  std::string png(bytes.begin(), bytes.end()), chunk = "gAMA", length;
+  appendValue<uint32_t>(chunk, gamma, true);
+  const uLong check = crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), static_cast<uInt>(chunk.size()));
+  appendValue<uint32_t>(chunk, static_cast<uint32_t>(check), true);
+  appendValue<uint32_t>(length, 4, true);
+  // Of the other chunk: length, name, one byte, and the check.
+  return png.replace(png.find("sRGB") - 4, 13, length + chunk);
+}
+
+TEST(Bitmap, TheGammaOfAPngIsNotedUnlessItIsThatOfSrgb) {
+  const Folder folder;
+  folder.write("linear.png", pngOfGamma(100000));
+  folder.write("srgb.png", pngOfGamma(45455));
+  const std::vector<Note> notes = notesOf(folder, "linear.png", "");
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0].what, "gAMA of a PNG");
+  EXPECT_TRUE(notesOf(folder, "linear.png", R"(<boolean name="raw" value="true"/>)").empty());
+  EXPECT_TRUE(notesOf(folder, "srgb.png", "").empty());
+  EXPECT_TRUE(notesOf(ImageFolder(), "grey.png", "").empty());
+}
+
 TEST(Bitmap, WrapModeIsThatOfAnAxisWithoutItsOwn) {
   const ImageFolder folder;
   const std::string clamp = R"(<string name="wrap_mode" value="clamp"/>)";

@@ -383,6 +383,23 @@ TEST(Structure, LineNumbersCountEveryKindOfLine) {
       6, "shape \"nope\"");
 }
 
+// Letters of these files have more bytes in UTF-8, in which pugixml counts, or fewer.
+TEST(Structure, LineNumbersOfFilesThatAreNotInUtf8) {
+  std::u16string wide = u"\ufeff<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n";
+  for (int line = 2; line < 9; ++line) wide += u"<!-- \u00e4\u20ac\U0001d11e -->\n";
+  wide += u"<shape type=\"sphere\"><float name=\"wobble\" value=\"1\"/></shape></scene>";
+  for (const bool bigEndian : {false, true}) {
+    std::string bytes;
+    for (const char16_t unit : wide) appendValue<uint16_t>(bytes, unit, bigEndian);
+    expectError(bytes, 9, "unknown parameter \"wobble\"");
+  }
+  std::string latin = "<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>\n<scene version=\"3.0.0\">\n";
+  for (int line = 3; line < 9; ++line) latin += "<!-- " + std::string(40, '\xe4') + " -->\n";
+  latin += "<shape type=\"sphere\"><float name=\"wobble\" value=\"1\"/>" + std::string(300, '\n') + "</shape>" +
+           std::string(kSensor) + "</scene>";
+  expectError(latin, 9, "unknown parameter \"wobble\"");
+}
+
 TEST(Numbers, PlusSignAndSpacesAreAccepted) {
   const Scene scene = loadBody(R"(<shape type="sphere"><float name="radius" value=" +2.5e0 "/></shape>)");
   EXPECT_EQ(onlySphere(scene).radius, 2.5);
@@ -416,6 +433,18 @@ TEST(Upgrade, DoesNotTouchCurrentFiles) {
   expectErrorOnLine2(
       R"(<shape type="sphere"><bsdf type="dielectric"><float name="intIOR" value="1.7"/></bsdf></shape>)",
       "unknown parameter \"intIOR\"");
+}
+
+TEST(Upgrade, ReflectancesOfMattSurfacesHaveTheirLongName) {
+  for (const std::string type : {"diffuse", "roughdiffuse"}) {
+    const Scene scene =
+        load(sceneXml("<shape type=\"sphere\"><bsdf type=\"" + type +
+                          R"("><float name="alpha" value="0"/><rgb name="diffuseReflectance" value="0.2"/>
+                                          </bsdf></shape>)" +
+                          std::string(kSensor),
+                      "0.6.0"));
+    EXPECT_EQ(std::get<Diffuse>(scene.materials.at(0).kind).reflectance.value, (Rgb{0.2, 0.2, 0.2})) << type;
+  }
 }
 
 TEST(Upgrade, LookAtAndTextureScalesAreUnderstood) {

@@ -120,9 +120,9 @@ TEST_F(ImageFiles, PngKeepsEveryCode) {
 
 // libpng's own limit is 1,000,000 pixels a side.
 TEST(Png, LongRowsAreWritten) {
-  constexpr uint32_t kWidth = 1'000'001;
-  const std::vector<uint8_t> row(size_t{3} * kWidth);
-  EXPECT_NO_THROW(encodePng("row.png", kWidth, 1, row.data()));
+  constexpr uint32_t kLongRow = 1'000'001;
+  const std::vector<uint8_t> row(size_t{3} * kLongRow);
+  EXPECT_NO_THROW(encodePng("row.png", kLongRow, 1, row.data()));
 }
 
 // Two pixels of a palette of red and azure, each with an alpha value (chunk tRNS).
