@@ -183,10 +183,13 @@ void Guide::fold() {
   // Count, before sums change.
   double guided = 0, all = 0;
   for (size_t cell = 0; cell < tree_.cells(); ++cell) {
-    const auto records = static_cast<double>(cellSums_[cell].records);
+    const CellSums& sums = cellSums_[cell];
+    const auto records = static_cast<double>(sums.records);
     guided += records * (1 - static_cast<double>(share_[cell]));
     all += records;
-    saturated_ += cellSums_[cell].squares >= kSumLimit ? 1 : 0;
+    for (const uint64_t sum : {sums.up, sums.down, sums.curvature, sums.squares}) {
+      saturated_ += sum >= kSumLimit ? 1 : 0;
+    }
     for (size_t bin = 0; bin < kGuideBins; ++bin) saturated_ += binSums_[cell * kGuideBins + bin] >= kSumLimit ? 1 : 0;
   }
   guidedShare_ = all > 0 ? guided / all : 0;

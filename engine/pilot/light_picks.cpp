@@ -24,6 +24,20 @@ void setPicks(RenderPlan<S>& plan, const std::vector<double>& shares) {
   plan.view.lightTable = plan.lights.table.data();
 }
 
+// The emitters that are not black: those that the scene's own lights are picked from.
+template <class S>
+std::vector<size_t> litEmitters(const Lights<S>& lights) {
+  std::vector<double> picks(lights.emitters, 0);
+  for (size_t i = 0; i < lights.records.size(); ++i) {
+    picks[lights.emitterOf[i]] += static_cast<double>(lights.records[i].pick);
+  }
+  std::vector<size_t> lit;
+  for (size_t emitter = 0; emitter < picks.size(); ++emitter) {
+    if (picks[emitter] > 0) lit.push_back(emitter);
+  }
+  return lit;
+}
+
 // What each path gets from an emitter that is picked always.
 template <class S>
 std::vector<double> givenBy(size_t emitter, RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
@@ -45,12 +59,13 @@ std::vector<double> givenBy(size_t emitter, RenderPlan<S>& plan, const RenderSet
 template <class S>
 void pickLightsByView(RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
   const Lights<S>& lights = plan.scene->lights;
-  if (lights.emitters < 2 || lights.emitters > kMostWeighedEmitters) return;
+  const std::vector<size_t> lit = litEmitters(lights);
+  if (lit.size() < 2 || lit.size() > kMostWeighedEmitters) return;
   constexpr size_t kPathsPerPlace = kPilotPaths / kPickPlaces;
   const std::vector<double> byChance = tracePilotPaths(plan, settings, area, kPickPlaces, PilotLight::byChance);
-  std::vector<std::vector<double>> given;  // by emitter and path
+  std::vector<std::vector<double>> given;  // by lit emitter and path
   std::vector<double> all(kPickPlaces, 0);
-  for (size_t emitter = 0; emitter < lights.emitters; ++emitter) {
+  for (const size_t emitter : lit) {
     given.push_back(givenBy(emitter, plan, settings, area, byChance));
     for (size_t i = 0; i < kPilotPaths; ++i) all[i / kPathsPerPlace] += given.back()[i] / kPathsPerPlace;
   }
@@ -68,7 +83,11 @@ void pickLightsByView(RenderPlan<S>& plan, const RenderSettings& settings, const
     sum += weights.back();
   }
   for (double& weight : weights) weight = sum > 0 ? std::round(kParts * weight / sum) : 0;
-  setPicks(plan, evenedShares(weights, kEvenShare, EvenAmong::all));
+  // Lit emitters out of view have their part of the even picks, black ones have none.
+  const std::vector<double> sharesOfLit = evenedShares(weights, kEvenShare, EvenAmong::all);
+  std::vector<double> shares(lights.emitters, 0);
+  for (size_t i = 0; i < lit.size(); ++i) shares[lit[i]] = sharesOfLit[i];
+  setPicks(plan, shares);
 }
 template void pickLightsByView(RenderPlan<float>&, const RenderSettings&, const FilmArea&);
 template void pickLightsByView(RenderPlan<double>&, const RenderSettings&, const FilmArea&);

@@ -278,6 +278,15 @@ TEST(Guide, keepsSquaresOfRareBrightPaths) {
   EXPECT_EQ(guide.statistics().saturated, 0u);
 }
 
+// Values of 1 with slopes of 2^32: sums over positive and negative slopes and that of squared slopes reach the limit,
+// no bin and no sum of squared values does.
+TEST(Guide, countsSaturatedSumsOfSlopes) {
+  Guide guide = untaughtGuide();
+  for (const float slope : {0x1p32f, -0x1p32f}) teach(guide, {.count = 2048, .slope = slope});
+  guide.fold();
+  EXPECT_EQ(guide.statistics().saturated, 3u);
+}
+
 // Kernels read indices of bins as signed numbers of 32 bits.
 TEST(Guide, hasNoMoreBinsThanIndices) {
   const size_t bytesOfCell = Guide::bytesFor(0) / kCellRoots;

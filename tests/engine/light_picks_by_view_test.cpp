@@ -1,6 +1,8 @@
-// Picks of emitters by what each gives to the film: seven eighths of the shares, the rest is even.
+// Picks of emitters by what each gives to the film: seven eighths of the shares, the rest is even among emitters that
+// are not black.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -37,7 +39,7 @@ std::vector<double> picksOf(const Scene& scene, Precision precision) {
   RenderPlan<S> plan = planRender<S>(scene, settings);
   pickLightsByView(plan, settings, filmArea(scene.film));
   std::vector<double> picks;
-  for (const LightRecord<S>& record : plan.lights.records) picks.push_back(record.pick);
+  for (uint32_t i = 0; i < plan.view.lightCount; ++i) picks.push_back(plan.view.lights[i].pick);
   return picks;
 }
 
@@ -47,6 +49,20 @@ TEST(LightPicksByView, areEvenAloneForALampOutOfView) {
   ASSERT_EQ(picks.size(), 2u);
   EXPECT_NEAR(picks[0], 1 - 0.125 / 2, 1e-6);
   EXPECT_NEAR(picks[1], 0.125 / 2, 1e-6);
+}
+
+TEST(LightPicksByView, areNeverOfABlackLamp) {
+  const std::string lit = lamp("2, 0, 1", 1), black = lamp("-2, 0, 1", 0), outOfView = lamp("0, 0, -1", 100);
+  const std::vector<double> ofOneLit = picksOf<float>(floorUnder(lit + black), Precision::floating);
+  ASSERT_EQ(ofOneLit.size(), 2u);
+  EXPECT_EQ(ofOneLit[0], 1);
+  EXPECT_EQ(ofOneLit[1], 0);
+  // The even eighth is divided among the two lit ones.
+  const std::vector<double> picks = picksOf<float>(floorUnder(lit + black + outOfView), Precision::floating);
+  ASSERT_EQ(picks.size(), 3u);
+  EXPECT_NEAR(picks[0], 1 - 0.125 / 2, 1e-6);
+  EXPECT_EQ(picks[1], 0);
+  EXPECT_NEAR(picks[2], 0.125 / 2, 1e-6);
 }
 
 TEST(LightPicksByView, areThoseOfALampForASpotThatIsAsBright) {
