@@ -11,6 +11,7 @@
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
+#include "cli/messages.h"
 #include "cli/pinning.h"
 #include "engine/version.h"
 #include "library/option_ranges.h"
@@ -36,9 +37,9 @@ std::vector<std::filesystem::path> benchSceneFiles(const BenchOptions& options) 
 void printBench(const BenchOptions& options, const std::string& text) {
   // Tables on stdout would spoil the JSON or the page there.
   if (options.json == kStandardStream || options.html == kStandardStream) return;
-  fmt::print("{}", text);
+  printOut("{}", text);
   // A measurement takes long, so each row is shown once it is there.
-  std::fflush(stdout);
+  flushStdout();
 }
 
 // Loads scenes at --size, or at the size that they state.
@@ -189,6 +190,7 @@ void checkBenchFiles(const BenchOptions& options) {
   for (const std::string& result : options.compare) files.input("--compare", result);
   for (const std::string& result : options.machines) files.input("--machines", result);
   if (!options.hashes.empty()) files.input("--hashes", options.hashes);
+  if (!options.against.empty()) files.input("--against", options.against);
   if (!options.json.empty()) files.output("--json", options.json);
   if (!options.html.empty()) files.output("--html", options.html);
   if (!options.pictures.empty()) files.input("--pictures", options.pictures);

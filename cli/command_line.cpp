@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "cli/commands.h"
 #include "cli/describe.h"
+#include "cli/messages.h"
 #include "cli/variables.h"
 #include "library/suggestion.h"
 
@@ -243,7 +245,9 @@ bool CommandLine::parse(std::vector<std::string> arguments, int& exitCode) {
     // CLI11 throws for --help and --version too. These errors have the exit code of success.
     const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
     if (!asked) failParsing(error.what(), arguments);
-    app_->exit(error);
+    std::ostringstream text;
+    app_->exit(error, text);
+    writeStdout(text.str());
     exitCode = kExitDone;
     return false;
   }

@@ -166,7 +166,7 @@ void writeMaps(const CompareOptions& options, const std::vector<MeasuredTest>& t
       const auto file = mapFile(options.mapFolder, test.label, tests.size() == 1, *score.metric);
       const ShownMap map = showMap(score, test.picture.width, test.picture.height);
       writePng(file.string(), map.picture);
-      if (options.printsText()) fmt::print("map {}: 0 to {:.6g}\n", file.string(), map.range);
+      if (options.printsText()) printOut("map {}: 0 to {:.6g}\n", file.string(), map.range);
     }
   }
 }
@@ -231,7 +231,7 @@ int compare(const CompareOptions& options) {
   }
   // Shows scores, maps and page.
   if (options.printsText()) printText(tests);
-  if (options.json) fmt::print("{}\n", jsonText(toJson(tests), 2));
+  if (options.json) printOut("{}\n", jsonText(toJson(tests), 2));
   if (!options.mapFolder.empty()) writeMaps(options, tests);
   if (!options.html.empty()) writeText(options.html, comparePage(reference, tests));
   // Checks all tests, also after one that fails.

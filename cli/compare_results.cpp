@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "cli/messages.h"
 #include "metrics/false_colour.h"
 
 namespace wavecrest {
@@ -34,7 +35,7 @@ nlohmann::ordered_json toJson(const std::vector<MeasuredTest>& tests) {
 
 void printText(const std::vector<MeasuredTest>& tests) {
   for (const MeasuredTest& test : tests) {
-    if (tests.size() > 1) fmt::print("{}\n", test.file);
+    if (tests.size() > 1) printOut("{}\n", test.file);
     for (const Measured& measured : test.scores) {
       std::string line;
       for (const Score& score : measured.measurement.scores) {
@@ -42,9 +43,9 @@ void printText(const std::vector<MeasuredTest>& tests) {
                             score.value);
       }
       if (!measured.metric->conditions.empty()) line += fmt::format("  ({})", measured.metric->conditions);
-      fmt::print("{:8} {}\n", measured.metric->name, line);
+      printOut("{:8} {}\n", measured.metric->name, line);
     }
-    if (test.nonFinitePixels > 0) fmt::print("{} pixels are not finite and were excluded\n", test.nonFinitePixels);
+    if (test.nonFinitePixels > 0) printOut("{} pixels are not finite and were excluded\n", test.nonFinitePixels);
   }
 }
 

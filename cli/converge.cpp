@@ -173,12 +173,12 @@ int runConverge(ConvergeOptions options) {
     tell("{}", stopLine(options));
     return kExitInterrupted;
   }
-  fmt::print("{}\n", results.string());
+  printOut("{}\n", results.string());
   // A shard is only a part. `wavecrest report` judges and shows all parts together.
   if (settings.shard.count > 1) return kExitDone;
   // Judges the findings and writes the report.
   const WrittenReport report = finishCampaign(settings);
-  for (const fs::path& file : report.files) fmt::print("{}\n", file.string());
+  for (const fs::path& file : report.files) printOut("{}\n", file.string());
   return options.check ? showFindings(report.claims) : kExitDone;
 }
 

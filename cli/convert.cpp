@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/file_check.h"
+#include "cli/messages.h"
 #include "cli/scene_options.h"
 #include "engine/save/save.h"
 #include "library/option_values.h"
@@ -57,8 +58,8 @@ int runConvert(const ConvertOptions& options) {
   printNotes(plan.notes, kind);
   // One of the files is the XML itself.
   const size_t assets = plan.files.size() - 1;
-  fmt::print("{}: {} shapes, {} materials, {} lights{}\n", options.output, scene.shapes.size(), scene.materials.size(),
-             scene.emitters.size(), assets == 0 ? "" : fmt::format("; {} files in {}", assets, plan.folder.string()));
+  printOut("{}: {} shapes, {} materials, {} lights{}\n", options.output, scene.shapes.size(), scene.materials.size(),
+           scene.emitters.size(), assets == 0 ? "" : fmt::format("; {} files in {}", assets, plan.folder.string()));
   return kExitDone;
 }
 

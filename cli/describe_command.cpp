@@ -1,6 +1,4 @@
 // wavecrest describe: the man page and completions of this very program.
-#include <fmt/core.h>
-
 #include <iterator>
 #include <memory>
 #include <string>
@@ -12,6 +10,7 @@
 #include "bench/score/workload.h"
 #include "cli/commands.h"
 #include "cli/describe.h"
+#include "cli/messages.h"
 #include "cli/progress.h"
 #include "engine/compile/instances.h"
 #include "engine/methods/method_list.h"
@@ -78,7 +77,7 @@ void addDescribeCommand(CommandLine& program, int&) {
   command.add("FORMAT", *kind, "man, bash, zsh or fish").required();
   command.run([kind, &program] {
     const size_t chosen = parseChoice("describe", *kind, kDescriptionKindNames);
-    fmt::print("{}", program.describe(static_cast<DescriptionKind>(chosen), kVersion, completionWords()));
+    printOut("{}", program.describe(static_cast<DescriptionKind>(chosen), kVersion, completionWords()));
   });
 }
 

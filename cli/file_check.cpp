@@ -4,11 +4,10 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
 
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image.h"
 #include "metrics/image/image_io.h"
@@ -80,11 +79,11 @@ void writeText(const std::string& file, const std::string& text) {
     writeFileAtomically(file, text);
     return;
   }
-  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
+  writeStdout(text);
+  const int error = flushStdout();
   // A reader that has enough, as `head`, is no error. main() asks the same.
-  if (!readerHasLeft()) {
-    throw ImageError("stdout", fmt::format("writing failed: {}", std::strerror(errno)), "expected somebody who reads");
-  }
+  if (error == 0 || readerHasLeft()) return;
+  throw ImageError("stdout", fmt::format("writing failed: {}", std::strerror(error)), "expected somebody who reads");
 }
 
 }  // namespace wavecrest

@@ -1,7 +1,5 @@
 #include "cli/findings.h"
 
-#include <fmt/core.h>
-
 #include "bench/claims/judge_claims.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
@@ -12,7 +10,7 @@ int showFindings(std::span<const ReportClaim> claims) {
   bool held = true;
   size_t judged = 0;
   for (const ReportClaim& claim : claims) {
-    fmt::print("{:24} {}: {} ({})\n", claim.verdict, claim.scene, claim.statement, claim.figure);
+    printOut("{:24} {}: {} ({})\n", claim.verdict, claim.scene, claim.statement, claim.figure);
     judged += claim.verdict == toString(ClaimVerdict::notJudged) ? 0 : 1;
     if (claim.verdict != toString(ClaimVerdict::fails)) continue;
     tell("wavecrest: check failed: {}: {}", claim.scene, claim.statement);

@@ -8,6 +8,7 @@
 #include "bench/json_text.h"
 #include "cli/commands.h"
 #include "cli/inspect_guide.h"
+#include "cli/messages.h"
 #include "cli/scene_options.h"
 #include "engine/inspect/inspection.h"
 #include "engine/scene/scene_error.h"
@@ -51,76 +52,75 @@ void printFacts(const Scene& scene, const SceneInspection& facts) {
   const BoundingSphere& bounds = facts.bounds;
   std::string needs;
   for (const std::string& need : facts.needs) needs += (needs.empty() ? "" : "; ") + need;
-  fmt::print("{}\n\n", scene.name);
-  fmt::print("BSDFs       {}\nlights      {}\ntextures    {}\n", listed(facts.bsdfs), listed(facts.lights),
-             listed(facts.textures));
-  fmt::print("sensor      {}, {} x {}, {} filter\n", facts.sensor, scene.film.imageWidth(), scene.film.imageHeight(),
-             facts.filter);
-  fmt::print("primitives  {} quads, {} triangles, {} spheres\n", facts.primitives.quads, facts.primitives.triangles,
-             facts.primitives.spheres);
+  printOut("{}\n\n", scene.name);
+  printOut("BSDFs       {}\nlights      {}\ntextures    {}\n", listed(facts.bsdfs), listed(facts.lights),
+           listed(facts.textures));
+  printOut("sensor      {}, {} x {}, {} filter\n", facts.sensor, scene.film.imageWidth(), scene.film.imageHeight(),
+           facts.filter);
+  printOut("primitives  {} quads, {} triangles, {} spheres\n", facts.primitives.quads, facts.primitives.triangles,
+           facts.primitives.spheres);
   if (facts.instances != 0) {
-    fmt::print("instances   {} of {} shape groups, {}\n", facts.instances, facts.groups,
-               facts.keepsInstances ? "in a hierarchy of two levels" : "as copies");
+    printOut("instances   {} of {} shape groups, {}\n", facts.instances, facts.groups,
+             facts.keepsInstances ? "in a hierarchy of two levels" : "as copies");
   }
-  fmt::print("bounds      ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), radius {:.6g}\n", bounds.low[0],
-             bounds.low[1], bounds.low[2], bounds.high[0], bounds.high[1], bounds.high[2], bounds.radius);
-  const std::string nodes = facts.hierarchyNodes == 0 ? "" : fmt::format(", {} nodes", facts.hierarchyNodes);
-  fmt::print("kernels     need {}\nintersector {}{}; {:.0f} bytes a primitive\n\n",
-             needs.empty() ? "nothing but diffuse surfaces" : needs, name(facts.accel), nodes, facts.bytesPerPrimitive);
+  printOut("bounds      ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), radius {:.6g}\n", bounds.low[0],
+           bounds.low[1], bounds.low[2], bounds.high[0], bounds.high[1], bounds.high[2], bounds.radius);
+  const std::string nodes = facts.accel == Accel::bvh ? fmt::format(", {} nodes", facts.hierarchyNodes) : "";
+  printOut("kernels     need {}\nintersector {}{}; {:.0f} bytes a primitive\n\n",
+           needs.empty() ? "nothing but diffuse surfaces" : needs, name(facts.accel), nodes, facts.bytesPerPrimitive);
 }
 
 // One row per method: its kernels and the memory of a render. A method that cannot render the scene has the reason
 // instead.
 void printMemory(const SceneInspection& facts) {
-  fmt::print("memory, MB (light vertices and photon map from a few waves of light paths)\n");
-  fmt::print("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>8} {:>9}\n", "method", "kernels",
-             "bytes/path", "scene", "waves", "film", "splats", "vertices", "photons", "guide", "chains", "image",
-             "total");
+  printOut("memory, MB (light vertices and photon map from a few waves of light paths)\n");
+  printOut("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>8} {:>9}\n", "method", "kernels",
+           "bytes/path", "scene", "waves", "film", "splats", "vertices", "photons", "guide", "chains", "image",
+           "total");
   for (const MethodInspection& row : facts.methods) {
     if (!row.refusal.empty()) {
-      fmt::print("{:<6} {}\n", toString(row.method), row.refusal);
+      printOut("{:<6} {}\n", toString(row.method), row.refusal);
       continue;
     }
     const MemoryUse& use = row.memory.use;
-    fmt::print("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>8} {:>9}\n",
-               toString(row.method), name(row.specialization), row.memory.bytesPerPath, megabytes(use.scene),
-               megabytes(use.waves), megabytes(use.film), megabytes(use.splats), megabytes(use.lightVertices),
-               megabytes(use.photonMap), megabytes(use.learned), megabytes(use.chains), megabytes(use.image),
-               megabytes(use.total()));
+    printOut("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>8} {:>9}\n", toString(row.method),
+             name(row.specialization), row.memory.bytesPerPath, megabytes(use.scene), megabytes(use.waves),
+             megabytes(use.film), megabytes(use.splats), megabytes(use.lightVertices), megabytes(use.photonMap),
+             megabytes(use.learned), megabytes(use.chains), megabytes(use.image), megabytes(use.total()));
   }
 }
 
 // One row per method that merges.
 void printMerging(const SceneInspection& facts) {
-  fmt::print("\nfirst radius of merges (--radius auto), and the photons of an iteration that a search meets\n");
-  fmt::print("{:<6} {:>10} {:>12} {:>8} {:>8}\n", "method", "radius", "scene units", "pixels", "photons");
+  printOut("\nfirst radius of merges (--radius auto), and the photons of an iteration that a search meets\n");
+  printOut("{:<6} {:>10} {:>12} {:>8} {:>8}\n", "method", "radius", "scene units", "pixels", "photons");
   for (const MethodInspection& row : facts.methods) {
     if (!row.mergeRadius) continue;
     const MergeRadius& radius = *row.mergeRadius;
-    fmt::print("{:<6} {:>10.4g} {:>12.4g} {:>8.2f} {:>8.2f}\n", toString(row.method), radius.first, radius.at(0),
-               radius.inPixels(), radius.photonsPerSearch());
+    printOut("{:<6} {:>10.4g} {:>12.4g} {:>8.2f} {:>8.2f}\n", toString(row.method), radius.first, radius.at(0),
+             radius.inPixels(), radius.photonsPerSearch());
   }
 }
 
 // One row per path class and one column per method. The last line names the method for references.
 void printClasses(const PathClassTable& table) {
-  fmt::print("\npaths from light to eye (A lamp or sky, P point, spot or sun, D diffuse or rough, S smooth, E eye)\n");
-  fmt::print("{:<16}", "class");
-  for (const MethodEntry& entry : kMethods) fmt::print(" {:<11}", entry.name);
-  fmt::print("\n");
+  printOut("\npaths from light to eye (A lamp or sky, P point, spot or sun, D diffuse or rough, S smooth, E eye)\n");
+  printOut("{:<16}", "class");
+  for (const MethodEntry& entry : kMethods) printOut(" {:<11}", entry.name);
+  printOut("\n");
   for (const PathClass& pathClass : table.classes) {
-    fmt::print("{:<16}", pathClass.signature);
-    for (const MethodEntry& entry : kMethods) fmt::print(" {:<11}", name(table.verdict(pathClass, entry.method)));
-    fmt::print(" {}\n", pathClass.description);
+    printOut("{:<16}", pathClass.signature);
+    for (const MethodEntry& entry : kMethods) printOut(" {:<11}", name(table.verdict(pathClass, entry.method)));
+    printOut(" {}\n", pathClass.description);
   }
-  fmt::print("\nreference   {}{}: {}\n", toString(table.reference.method), table.reference.biased ? " (biased)" : "",
-             table.reference.reason);
+  printOut("\nreference   {}{}: {}\n", toString(table.reference.method), table.reference.biased ? " (biased)" : "",
+           table.reference.reason);
 }
 
 void printNoteList(const std::vector<Note>& notes) {
   if (notes.empty()) return;
-  fmt::print("\nnotes: what was approximated or left out\n");
-  for (const Note& note : notes) fmt::print("{}\n", toString(note));
+  printOut("\nnotes: what was approximated or left out\n");
+  for (const Note& note : notes) printOut("{}\n", toString(note));
 }
 
 // Prints what inspectScene finds, as text or JSON. Nothing is rendered, but for a picture of the guide.
@@ -150,7 +150,7 @@ int runInspect(const InspectOptions& options) {
   const SceneInspection facts = inspectScene(scene, settings);
   // Output: one JSON object, or text.
   if (options.json) {
-    fmt::print("{}\n", jsonText(inspectionJson(scene, facts), 2));
+    printOut("{}\n", jsonText(inspectionJson(scene, facts), 2));
     return kExitDone;
   }
   printFacts(scene, facts);

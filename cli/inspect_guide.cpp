@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "cli/file_check.h"
+#include "cli/messages.h"
 #include "engine/session/session.h"
 #include "library/errors.h"
 #include "library/option_values.h"
@@ -62,7 +63,7 @@ void writeGuidePicture(const Scene& scene, RenderSettings settings, const GuideO
   if (!learned) throw InputError(fmt::format("--guide {},{}: sees no rough surface; expected a pixel that does", x, y));
   Image picture = pictureOf(*learned);
   const float greatest = *std::max_element(picture.pixels.begin(), picture.pixels.end());
-  fmt::print(
+  printOut(
       "pixel {},{}: cell {} of {}, after {} iterations; the guide draws {:.0f} % of directions, at most {:.3g} a "
       "steradian\n",
       x, y, learned->cell, learned->cells, session->statistics().iterations, 100 * learned->guidedShare, greatest);

@@ -77,13 +77,13 @@ LiveRender::LiveRender(const LiveOptions& options, const Scene& scene, const Ren
   // Without page and viewer the session stays as it is.
   if (!view_ && !tev_) return;
   // The session is replaced by one that takes looks and hands each to page and viewer.
-  auto watched =
+  auto looked =
       std::make_unique<WatchedSession>(std::move(session), settings, [this](const std::shared_ptr<const Look>& look) {
         if (view_) view_->take(look);
         if (tev_) tev_->take(look);
       });
-  watched_ = watched.get();
-  session = std::move(watched);
+  watched_ = looked.get();
+  session = std::move(looked);
 }
 
 // Here, because only this file knows the complete types of viewer and page.

@@ -8,13 +8,11 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -116,15 +114,12 @@ int run(std::vector<std::string> arguments) {
     addScenesCommand(program, exitCode);
     addDescribeCommand(program, exitCode);
     program.parse(std::move(arguments), exitCode);
-  } catch (const std::system_error&) {
-    // fmt::print throws where stdout does not take a full buffer; the state of the stream tells of that below.
-    if (std::ferror(stdout) == 0) exitCode = report(std::current_exception());
   } catch (...) {
     exitCode = report(std::current_exception());
   }
-  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (written || readerHasLeft()) return exitCode;
-  tell("wavecrest: error: stdout: writing failed: {}; expected somebody who reads", std::strerror(errno));
+  const int error = flushStdout();
+  if (error == 0 || readerHasLeft()) return exitCode;
+  tell("wavecrest: error: stdout: writing failed: {}; expected somebody who reads", std::strerror(error));
   return exitCode == kExitDone ? kExitFailure : exitCode;
 }
 

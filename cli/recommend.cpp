@@ -9,6 +9,7 @@
 #include "bench/json_text.h"
 #include "bench/recommend/recommend.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/scene_options.h"
 #include "library/option_ranges.h"
 #include "library/option_values.h"
@@ -48,7 +49,7 @@ void runRecommend(const RecommendOptions& options) {
   takeProgramDefaults(settings);
   const Recommendation result = recommend(scene, settings, request);
   // Output: JSON, or a paragraph and a table.
-  fmt::print("{}", options.json ? jsonText(toJson(result), 2) + "\n" : toText(result));
+  printOut("{}", options.json ? jsonText(toJson(result), 2) + "\n" : toText(result));
 }
 
 }  // namespace

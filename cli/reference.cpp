@@ -138,12 +138,12 @@ std::unique_ptr<const Reference> otherReference(const ReferenceOptions& options,
 
 // Prints how good the reference is.
 void showReference(const std::string& output, const Reference& reference, ProgressKind kind) {
-  fmt::print("{}: {} iterations of each half, {:.1f} s, relative error {:.5f}\n", output, reference.info.iterations,
-             reference.info.renderSeconds, reference.info.relativeError);
-  for (const auto& [name, value] : reference.noiseFloors) fmt::print("noise floor {:8} {:.6g}\n", name, value);
+  printOut("{}: {} iterations of each half, {:.1f} s, relative error {:.5f}\n", output, reference.info.iterations,
+           reference.info.renderSeconds, reference.info.relativeError);
+  for (const auto& [name, value] : reference.noiseFloors) printOut("noise floor {:8} {:.6g}\n", name, value);
   if (reference.info.isBiased()) {
-    fmt::print("biased by merging within {:g} of the scene's radius; compare it with one of half of that\n",
-               reference.info.radius);
+    printOut("biased by merging within {:g} of the scene's radius; compare it with one of half of that\n",
+             reference.info.radius);
   }
   if (reference.info.method == toString(Method::mlt)) warn(kind, fmt::format("{}: {}", output, kChainsMislead));
   for (const std::string& floor : unmetFloors(reference.noiseFloors)) {
@@ -217,7 +217,7 @@ int runReference(const ReferenceOptions& options) {
     // Checks it against another reference of the scene.
     if (other && !guard.interrupted()) {
       const Agreement agreement = compareReferences(reference, *other);
-      fmt::print("{} and {} {}\n", output, options.agreeWith, agreement.describe());
+      printOut("{} and {} {}\n", output, options.agreeWith, agreement.describe());
       if (!agreement.agrees()) {
         tell("wavecrest: check failed: {} and {} are of different truths", output, options.agreeWith);
         return kExitCheck;

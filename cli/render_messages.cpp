@@ -96,10 +96,10 @@ void showChoice(ProgressKind kind, Method method, const std::optional<MethodChoi
 
 void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, const DryPlan& plan) {
   const uint32_t width = scene.film.imageWidth(), height = scene.film.imageHeight();
-  fmt::print("scene    {}, {}x{} pixels, scene_hash {}\n", scene.name, width, height, hashText(scene.hash));
-  fmt::print("method   {}, {} kernels on {}, {} intersector, {} threads\n", toString(settings.method),
-             kSpecializationNames[static_cast<size_t>(plan.specialization)], toString(plan.isa),
-             kAccelNames[static_cast<size_t>(plan.accel)], settings.threads);
+  printOut("scene    {}, {}x{} pixels, scene_hash {}\n", scene.name, width, height, hashText(scene.hash));
+  printOut("method   {}, {} kernels on {}, {} intersector, {} threads\n", toString(settings.method),
+           kSpecializationNames[static_cast<size_t>(plan.specialization)], toString(plan.isa),
+           kAccelNames[static_cast<size_t>(plan.accel)], settings.threads);
   std::vector<std::string> ends;
   if (const std::optional<uint64_t> iterations = settings.jointIterations()) {
     ends.push_back(fmt::format("after {} spp", *iterations));
@@ -109,29 +109,28 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
   if (options.until.relativeError > 0) {
     ends.push_back(fmt::format("once the relative error is {:g}", options.until.relativeError));
   }
-  fmt::print("ends     {}\n", fmt::join(ends, " or "));
+  printOut("ends     {}\n", fmt::join(ends, " or "));
   if (const std::optional<MergeRadius>& radius = plan.mergeRadius) {
-    fmt::print(
-        "merging  first within {:.4g} of the scene's radius: {:.4g} in its units, {:.2f} pixels, {:.2f} photons\n",
-        radius->first, radius->at(0), radius->inPixels(), radius->photonsPerSearch());
+    printOut("merging  first within {:.4g} of the scene's radius: {:.4g} in its units, {:.2f} pixels, {:.2f} photons\n",
+             radius->first, radius->at(0), radius->inPixels(), radius->photonsPerSearch());
   }
-  fmt::print("memory   {}{}\n", describe(plan.memory),
-             plan.method == settings.method ? "" : fmt::format("; of {}, if trials choose it", toString(plan.method)));
+  printOut("memory   {}{}\n", describe(plan.memory),
+           plan.method == settings.method ? "" : fmt::format("; of {}, if trials choose it", toString(plan.method)));
   if (options.until.relativeError > 0) {
-    fmt::print("         and {:.1f} MB for the films that tell the error\n",
-               static_cast<double>(FilmErrorWatch::bytesFor(size_t{width} * height)) / 1e6);
+    printOut("         and {:.1f} MB for the films that tell the error\n",
+             static_cast<double>(FilmErrorWatch::bytesFor(size_t{width} * height)) / 1e6);
   }
   // Memory that writing an EXR takes besides the plan.
-  const auto isExr = [](const std::string& output) { return output.ends_with(".exr"); };
-  if (std::any_of(options.outputs.begin(), options.outputs.end(), isExr)) {
+  const auto isExr = [](const std::string& output) { return extensionOf(output) == ".exr"; };
+  if (!options.snapshotEvery.empty() || std::any_of(options.outputs.begin(), options.outputs.end(), isExr)) {
     // The file is written block by block and is never in memory as a whole.
     const size_t bytes = exrWritingBytes(width, height);
-    fmt::print("         and {:.1f} MB for the blocks of an EXR while they are compressed\n",
-               static_cast<double>(bytes) / 1e6);
+    printOut("         and {:.1f} MB for the blocks of an EXR while they are compressed\n",
+             static_cast<double>(bytes) / 1e6);
   }
-  for (const std::string& output : options.outputs) fmt::print("writes   {}\n", output);
-  if (!options.checkpoint.file.empty()) fmt::print("writes   {}\n", options.checkpoint.file);
-  if (!options.stats.empty()) fmt::print("writes   {}\n", options.stats);
+  for (const std::string& output : options.outputs) printOut("writes   {}\n", output);
+  if (!options.checkpoint.file.empty()) printOut("writes   {}\n", options.checkpoint.file);
+  if (!options.stats.empty()) printOut("writes   {}\n", options.stats);
 }
 
 // Pixels without samples, samples that were not finite, clamped splats, and paths that

@@ -1,6 +1,4 @@
 // wavecrest report DIR...: rebuilds DIR/report.html from the results in DIR.
-#include <fmt/core.h>
-
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,6 +12,7 @@
 #include "bench/results/results_store.h"
 #include "cli/commands.h"
 #include "cli/findings.h"
+#include "cli/messages.h"
 #include "metrics/image/image.h"
 
 namespace wavecrest {
@@ -66,7 +65,7 @@ void addReportCommand(CommandLine& program, int& exitCode) {
       if (options->judge) judgeAnew(paths);
       options->files.reference = options->reference;
       const WrittenReport report = writeReport(paths, options->files);
-      for (const auto& file : report.files) fmt::print("{}\n", file.string());
+      for (const auto& file : report.files) printOut("{}\n", file.string());
       // --check: the exit code tells whether all findings hold.
       if (!options->check) return;
       if (report.claims.empty()) {

@@ -1,11 +1,10 @@
 // wavecrest scenes: the built-in scenes, a line each.
-#include <fmt/core.h>
-
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "bench/json_text.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {
@@ -16,7 +15,7 @@ void addScenesCommand(CommandLine& program, int&) {
   command.addFlag("--json", *json, "as an array of objects: name, description, file");
   command.run([json] {
     if (!*json) {
-      for (const SceneEntry& scene : builtInScenes()) fmt::print("{:<24} {}\n", scene.name, scene.description);
+      for (const SceneEntry& scene : builtInScenes()) printOut("{:<24} {}\n", scene.name, scene.description);
       return;
     }
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
@@ -25,7 +24,7 @@ void addScenesCommand(CommandLine& program, int&) {
                      {"description", scene.description},
                      {"file", findScene(std::string(scene.name)).string()}});
     }
-    fmt::print("{}\n", jsonText(all, 2));
+    printOut("{}\n", jsonText(all, 2));
   });
 }
 

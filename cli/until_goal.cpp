@@ -76,28 +76,34 @@ nlohmann::ordered_json UntilGoal::render(Session& session, const RenderSettings&
   if (!reference_) return renderUntilError(session, settings);
   const SsimNow now = renderUntilSsim(session, settings, {.reference = *reference_, .ssim = request_.ssim});
   reached_ = now.reached;
-  return {{"reached", now.reached}, {"iterations", now.iterations}, {"ssim", now.ssim}, {"ssim_goal", request_.ssim}};
+  return {{"reached", now.reached},
+          {"iterations", now.iterations},
+          {"ssim", now.ssim ? nlohmann::ordered_json(*now.ssim) : nlohmann::ordered_json()},
+          {"ssim_goal", request_.ssim}};
 }
 
 nlohmann::ordered_json UntilGoal::renderUntilError(Session& session, const RenderSettings& settings) {
   // An error that is not known yet is null.
-  using Json = nlohmann::ordered_json;
+  using Value = nlohmann::ordered_json;
   const ErrorNow now = error_.renderUntil(session, settings, request_.relativeError);
   reached_ = now.reached;
   black_ = now.black;
   return {{"reached", now.reached},
           {"iterations", now.iterations},
-          {"relative_error", now.error ? Json(now.error->value) : Json()},
-          {"interval", now.error ? Json({now.error->interval.low, now.error->interval.high}) : Json()},
+          {"relative_error", now.error ? Value(now.error->value) : Value()},
+          {"interval", now.error ? Value({now.error->interval.low, now.error->interval.high}) : Value()},
           {"interval_level", kIntervalLevel},
           {"relative_error_goal", request_.relativeError}};
 }
 
 std::string UntilGoal::describe(const nlohmann::ordered_json& reached) {
+  const auto ssim = [&] {
+    return reached["ssim"].is_null() ? "SSIM not known yet" : fmt::format("SSIM {:.4f}", reached["ssim"].get<double>());
+  };
   const bool ofSsim = reached.contains("ssim");
   return fmt::format("{} after {} iterations: {}, goal {:.4g}",
                      reached["reached"].get<bool>() ? "reached" : "not reached", reached["iterations"].get<uint64_t>(),
-                     ofSsim ? fmt::format("SSIM {:.4f}", reached["ssim"].get<double>()) : describeError(reached),
+                     ofSsim ? ssim() : describeError(reached),
                      reached[ofSsim ? "ssim_goal" : "relative_error_goal"].get<double>());
 }
 

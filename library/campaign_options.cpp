@@ -88,7 +88,7 @@ Effort effortOf(const CampaignOptions& options, const Profile& profile, std::str
   if (has(options, "--time")) effort.seconds = parseDuration("--time", get(options, "--time"));
   if (has(options, "--snapshot-every")) {
     const std::string every = get(options, "--snapshot-every");
-    effort.snapshotSeconds = every == "log" ? 0 : parseDuration("--snapshot-every", every);
+    effort.snapshotSeconds = every == "log" ? 0 : parseSnapshotInterval("--snapshot-every", every);
     effort.logarithmicFirst = false;
   }
   return effort;

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 
 #include "bench/campaign/file_lock.h"
 #include "bench/results/read_results.h"
@@ -72,6 +74,16 @@ std::optional<CampaignOptions> extended(const CampaignOptions& before, const std
   }
   if (name == "--time" || name == "--time-factor" || name == "--spp")
     return isLonger(before, after) ? std::optional(after) : std::nullopt;
+  // Options whose meaning the results file tells: what the campaign has without them may be said.
+  constexpr std::array<std::string_view, 10> kTold{"--profile",     "--size",         "--precision", "--sampler",
+                                                   "--radius",      "--radius-alpha", "--roulette",  "--merge-vertices",
+                                                   "--light-paths", "--clock"};
+  const auto meaning = [](const CampaignOptions& one) {
+    std::map<std::string, std::string> keys = campaignKeys(one, campaignSettings(one));
+    keys.erase("options");
+    return keys;
+  };
+  if (std::find(kTold.begin(), kTold.end(), name) != kTold.end() && meaning(after) == meaning(before)) return before;
   return std::nullopt;
 }
 

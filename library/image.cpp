@@ -57,7 +57,14 @@ std::vector<uint8_t> srgbCodes(const Image& image, double exposure) {
 }
 
 std::vector<uint8_t> falseColours(const std::vector<float>& map, uint32_t width, uint32_t height, double range) {
-  return translated([&] { return falseColour(map, width, height, range).pixels; });
+  return translated([&] {
+    if (map.empty() || map.size() != size_t{width} * height) {
+      throw ImageError("map", "has " + std::to_string(map.size()) + " values",
+                       "expected one for each of its " + std::to_string(width) + " x " + std::to_string(height) +
+                           " pixels, and at least one");
+    }
+    return falseColour(map, width, height, range).pixels;
+  });
 }
 
 }  // namespace api

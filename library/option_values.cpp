@@ -81,9 +81,16 @@ double parseDuration(const std::string& option, const std::string& text) {
   return std::isfinite(total) && total > 0 ? total : fail();
 }
 
+double parseSnapshotInterval(const std::string& option, const std::string& text) {
+  constexpr double kLeast = 1e-4;
+  const double seconds = parseDuration(option, text);
+  if (seconds >= kLeast) return seconds;
+  throw UsageError(fmt::format("{} {}: expected log, or 0.1ms or more", option, text));
+}
+
 SnapshotSchedule parseSnapshotSchedule(const std::string& option, const std::string& text) {
   if (text.empty()) return SnapshotSchedule::none();
-  return text == "log" ? SnapshotSchedule::logarithmic() : SnapshotSchedule::every(parseDuration(option, text));
+  return text == "log" ? SnapshotSchedule::logarithmic() : SnapshotSchedule::every(parseSnapshotInterval(option, text));
 }
 
 std::vector<std::string_view> isaNames() {

@@ -32,6 +32,9 @@ std::optional<double> parseRadius(const std::string& option, const std::string& 
 // "6s", "100ms", "2m", "1h30m", "0.5s", or plain seconds. Positive and finite, or UsageError.
 double parseDuration(const std::string& option, const std::string& text);
 
+// The duration between snapshots, at least 0.1 ms, or UsageError.
+double parseSnapshotInterval(const std::string& option, const std::string& text);
+
 // "" for no snapshots, "log" for render times that grow by a fixed ratio, else a duration between snapshots.
 SnapshotSchedule parseSnapshotSchedule(const std::string& option, const std::string& text);
 

@@ -18,15 +18,6 @@ double secondsBy(ClockKind clock, const Session& session, uint32_t threads) {
   return clock == ClockKind::wall ? statistics.renderSeconds : statistics.cpuSeconds / threads;
 }
 
-// Renders for so many seconds of the clock. A session stops by wall time, of which others may have taken a part.
-void renderBy(ClockKind clock, Session& session, uint32_t threads, double seconds) {
-  constexpr double kEnough = 0.98;
-  for (double done = secondsBy(clock, session, threads); done < kEnough * seconds;
-       done = secondsBy(clock, session, threads)) {
-    session.renderUntil(std::nullopt, session.statistics().renderSeconds + seconds - done);
-  }
-}
-
 // One part: an image, how long it took, and how long it would take within a long render.
 struct Part {
   std::optional<Image> image;
@@ -39,7 +30,9 @@ Part renderPart(const Scene& scene, const RenderSettings& settings, double secon
   // The first whole image, if it comes in time. What comes before it is done once in a render.
   const double limit = kMostOverrun * seconds;
   while (!session->statistics().hasWholeImage() && now() < limit) {
-    session->renderUntil(1, session->statistics().renderSeconds + limit - now());
+    const double end = session->statistics().renderSeconds + limit - now();
+    session->renderUntil(1, end);
+    if (session->statistics().renderSeconds < end) break;  // it has its iteration, or no time for another step
   }
   Part part;
   const uint64_t first = session->statistics().iterations;
@@ -57,6 +50,16 @@ Part renderPart(const Scene& scene, const RenderSettings& settings, double secon
 }
 
 }  // namespace
+
+void renderBy(ClockKind clock, Session& session, uint32_t threads, double seconds) {
+  constexpr double kEnough = 0.98;
+  for (double done = secondsBy(clock, session, threads); done < kEnough * seconds;
+       done = secondsBy(clock, session, threads)) {
+    const double end = session.statistics().renderSeconds + seconds - done;
+    session.renderUntil(std::nullopt, end);
+    if (session.statistics().renderSeconds < end) break;  // chains: another step does not fit in
+  }
+}
 
 RenderSettings pilotSettings(RenderSettings settings, Method method) {
   settings.method = method;

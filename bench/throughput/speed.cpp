@@ -7,7 +7,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr size_t kMostRounds = 5;  // of a visit
+constexpr size_t kMostRoundsOfVisit = 5;
 
 // 1, 2, 4, ... below `most`, and `most` itself.
 std::vector<uint32_t> threadCounts(uint32_t most) {
@@ -115,7 +115,7 @@ void SpeedMeasurement::findIterations(double sliceSeconds) {
 }
 
 void SpeedMeasurement::visit(double seconds) {
-  if (iterations_.empty()) findIterations(seconds / static_cast<double>((kMostRounds + 1) * threads_.size()));
+  if (iterations_.empty()) findIterations(seconds / static_cast<double>((kMostRoundsOfVisit + 1) * threads_.size()));
   // Sessions of this visit. Their first slices fill caches and start threads; chains bootstrap.
   const auto sessions = makeSessions();
   std::vector<SliceRenderer> renderers;
@@ -124,7 +124,7 @@ void SpeedMeasurement::visit(double seconds) {
     renderers.back().render();
   }
   // Slices of all thread counts in turn.
-  auto slices = renderInTurn(renderers, {.seconds = seconds, .fewestRounds = 1, .mostRounds = kMostRounds},
+  auto slices = renderInTurn(renderers, {.seconds = seconds, .fewestRounds = 1, .mostRounds = kMostRoundsOfVisit},
                              [&] { watch_.look(); });
   for (size_t i = 0; i < slices.size(); ++i) slices_[i].push_back(std::move(slices[i]));
   facts_ = sessions.front()->statistics();

@@ -33,7 +33,7 @@ SsimNow renderUntilSsim(Session& session, const RenderSettings& settings, const 
     now.iterations = session.statistics().iterations;
     if (now.iterations == 0) break;  // no whole image
     now.ssim = ssimNow(session, goal.reference);
-    now.reached = now.ssim >= goal.ssim;
+    now.reached = *now.ssim >= goal.ssim;
     if (now.iterations < asked) break;  // its time is over, or it was interrupted
   }
   return now;

@@ -5,6 +5,7 @@
 // as much at most.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "bench/until/film_error.h"
@@ -19,8 +20,8 @@ struct SsimGoal {
 };
 
 struct SsimNow {
-  uint64_t iterations = 0;  // at the last look
-  double ssim = 0;
+  uint64_t iterations = 0;     // at the last look
+  std::optional<double> ssim;  // nothing while there is no whole image
   bool reached = false;
 };
 

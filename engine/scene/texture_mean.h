@@ -16,8 +16,8 @@ inline bool isOutside(const BitmapTexture& texture, size_t pixel) {
          pixel / texture.bitmap->width % 2 == 1;
 }
 
-// The mean colour of a bitmap's texels that are not outside, or of a checkerboard's two colours. A bitmap of one channel
-// is grey.
+// The mean colour of a bitmap's texels that are not outside, or of a checkerboard's two colours. A bitmap of one
+// channel is grey.
 inline Rgb mean(const Texture& texture) {
   Rgb sum{};
   if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {

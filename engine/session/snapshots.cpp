@@ -24,7 +24,7 @@ SnapshotSchedule::Due SnapshotSchedule::due(unsigned number) const {
     case Kind::none:
       return {};
     case Kind::regular:
-      return {.seconds = interval_ * (number + 1), .iterations = std::nullopt};
+      return {.seconds = interval_ * (number + 1.0), .iterations = std::nullopt};
     case Kind::time:
       return {.seconds = logarithmicTime(number), .iterations = std::nullopt};
     case Kind::timeThenRegular: {

@@ -199,48 +199,17 @@ class Score(CommandTest):
         self.write("hashes.json", Score.written)
         return json.loads(Score.written)
 
-    def test_a_right_image_has_a_score_with_all_figures(self):
-        self.hashes()
-        told = self.run_wavecrest(*self.PART, "--hashes", self.path("hashes.json"), "--json", self.path("score.json"),
-                                  expect=DONE)
-        self.assertNotIn("NOT VALID", told.stdout)
-        self.assertNotRegex(told.stdout, r"\b(inf|nan)\b")
-        result = read_json(self.path("score.json"))
-        validate(result)
-        self.assertTrue(result["valid"])
-        self.assertEqual([entry["method"] for entry in result["entries"]], ["lt", "vcm"])
-        for entry in result["entries"]:
-            self.assertEqual((entry["image"], entry["image_verdict"]), ("exact", "exact"))
-            self.assertIsNone(entry["image_difference"])
-            self.assertEqual([round(at["samples_per_pixel"] * 8 / entry["iterations"]) for at in entry["quality"]],
-                             [1, 2, 4, 8])
-            self.assertLess(entry["quality"][-1]["relmse"], entry["quality"][0]["relmse"])
-            used = [stage for stage in entry["stages"] if stage["items_per_path"] > 0]
-            for name in STAGES[entry["method"]]:
-                self.assertIn(name, [stage["name"] for stage in used])
-            self.assertTrue(all(stage["seconds_per_item"] > 0 for stage in used))
-            self.assertTrue(any(stage["bytes_per_item"] for stage in used))
-            if result["events_refusal"] is None:
-                self.assertTrue(any(stage["events_per_item"]["cycles"] > 0 for stage in used))
-            else:
-                self.assertIn("are not counted here", told.stdout)
-        product = result["entries"][0]["score"] * result["entries"][1]["score"]
-        self.assertAlmostEqual(result["score"] / product**0.5, 1)
-
-    def test_a_wrong_image_fails_validation(self):
-        hashes = self.hashes()
-        for group in hashes["images"]["small"].values():
-            group["cornell-diffuse"]["vcm"] = "0123456789abcdef"
-        wrong = self.write("wrong.json", json.dumps(hashes))
-        told = self.run_wavecrest(*self.PART, "--hashes", wrong, "--json", self.path("score.json"), expect=CHECK)
-        self.assertRegex(told.stdout, r"(?m)^cornell-diffuse +vcm +refused .*\n +refused \(other bits than")
-        self.assertIn("NOT VALID", told.stdout)
-        result = read_json(self.path("score.json"))
-        validate(result)
-        self.assertEqual([entry["image"] for entry in result["entries"]], ["exact", "refused"])
-
-    def no_hashes(self):
-        return self.write("none.json", json.dumps({"score_version": 1, "images": {}}))
+    def has_all_figures(self, entry, events):
+        self.assertEqual([round(at["samples_per_pixel"] * 8 / entry["iterations"]) for at in entry["quality"]],
+                         [1, 2, 4, 8])
+        self.assertLess(entry["quality"][-1]["relmse"], entry["quality"][0]["relmse"])
+        used = [stage for stage in entry["stages"] if stage["items_per_path"] > 0]
+        for name in STAGES[entry["method"]]:
+            self.assertIn(name, [stage["name"] for stage in used])
+        self.assertTrue(all(stage["seconds_per_item"] > 0 for stage in used))
+        self.assertTrue(any(stage["bytes_per_item"] for stage in used))
+        if events:
+            self.assertTrue(any(stage["events_per_item"]["cycles"] > 0 for stage in used))
 
     def is_exported_for_other_tools(self, result):
         result["valid"] = False
@@ -273,35 +242,49 @@ class Score(CommandTest):
                                       r" +within tolerance \(worst block: SSIM \S+, mean off by \S+ %; image: ")
         self.assertIn("images: 1 exact, 1 within tolerance", told.stdout)
         self.assertNotIn("NOT VALID", told.stdout)
+        self.assertNotRegex(told.stdout, r"\b(inf|nan)\b")
         result = read_json(self.path("score.json"))
         validate(result)
         self.assertTrue(result["valid"])
+        if result["events_refusal"] is not None:
+            self.assertIn("are not counted here", told.stdout)
+        for entry in result["entries"]:
+            self.has_all_figures(entry, result["events_refusal"] is None)
         exact, entry = result["entries"]
-        self.assertEqual((exact["image"], entry["image"]), ("exact", "within tolerance"))
+        self.assertAlmostEqual(result["score"] / (exact["score"] * entry["score"]) ** 0.5, 1)
+        self.assertEqual((exact["method"], exact["image"], exact["image_verdict"]), ("lt", "exact", "exact"))
+        self.assertIsNone(exact["image_difference"])
+        self.assertEqual((entry["method"], entry["image"]), ("vcm", "within tolerance"))
         self.assertIn(entry["image_verdict"], told.stdout)
         self.assertGreater(entry["image_difference"]["ssim"], 0.995)
         self.assertLess(entry["image_difference"]["mean_off"], 0.003)
         self.is_exported_for_other_tools(result)
 
-    def test_another_picture_is_refused(self):
+    def test_other_bits_of_this_build_and_another_picture_are_refused(self):
+        hashes = self.hashes()
+        for group in hashes["images"]["small"].values():
+            group["cornell-diffuse"] = {"lt": "0123456789abcdef"}
+        wrong = self.write("wrong.json", json.dumps(hashes))
         self.run_wavecrest(*self.PART, "--write-pictures", self.path("pictures.json"))
         pictures = read_json(self.path("pictures.json"))
         images = pictures["pictures"]["small"]["cornell-diffuse"]
         images["vcm"] = images["lt"]
         swapped = self.write("swapped.json", json.dumps(pictures))
-        told = self.run_wavecrest(*self.PART, "--hashes", self.no_hashes(), "--pictures", swapped, "--json",
+        told = self.run_wavecrest(*self.PART, "--hashes", wrong, "--pictures", swapped, "--json",
                                   self.path("score.json"), expect=CHECK)
+        self.assertRegex(told.stdout, r"(?m)^cornell-diffuse +lt +refused .*\n +refused \(other bits than")
         self.assertRegex(told.stdout, r"(?m)^ +refused \(.*image: SSIM \S+, at least 0.995")
         self.assertIn("NOT VALID", told.stdout)
         result = read_json(self.path("score.json"))
         validate(result)
         self.assertFalse(result["valid"])
-        self.assertEqual([entry["image"] for entry in result["entries"]], ["within tolerance", "refused"])
+        self.assertEqual([entry["image"] for entry in result["entries"]], ["refused", "refused"])
 
     def test_without_hash_and_picture_there_is_no_valid_score(self):
+        no_hashes = self.write("hashes.json", json.dumps({"score_version": 1, "images": {}}))
         no_pictures = self.write("pictures.json", json.dumps({"score_version": 1, "pictures": {}}))
         told = self.run_wavecrest("bench", "cornell-diffuse", "--score", "small", "--methods", "lt", "--hashes",
-                                  self.no_hashes(), "--pictures", no_pictures, expect=CHECK)
+                                  no_hashes, "--pictures", no_pictures, expect=CHECK)
         self.assertRegex(told.stdout, r"(?m)^cornell-diffuse +lt +unknown")
         self.assertIn("could not be validated", told.stdout)
 
@@ -411,6 +394,7 @@ class Modes(CommandTest):
         for arguments, answer in [
             (["--json", "absent/b.json"], r"--json absent/b\.json: there is no folder"),
             (["--extremes", "--html", "absent/p.html"], r"--html absent/p\.html: there is no folder"),
+            (["--against", "X", "--json", "X"], r"--json X: is the file of --against too"),
             (["--extremes", "--html", "-", "--json", "-"], r"--html -: is the file of --json too"),
             (["--score", "small", "--write-hashes", "absent/h.json"], r"--write-hashes absent/h\.json: there is no"),
         ]:

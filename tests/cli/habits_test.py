@@ -9,7 +9,7 @@ import struct
 import subprocess
 import unittest
 
-from harness import DONE, INPUT, TIMEOUT_SECONDS, USAGE, WAVECREST, CommandTest, read_exr_header, read_pfm
+from harness import CHECK, DONE, INPUT, TIMEOUT_SECONDS, USAGE, WAVECREST, CommandTest, read_exr_header, read_pfm
 
 SMALL = ["--size", "16x12", "--spp", "2", "--threads", "1", "--progress", "none"]
 
@@ -147,6 +147,15 @@ class Readers(CommandTest):
         ):  # fmt: skip
             result = self.run_into_closed_pipe(*arguments)
             self.assertEqual((result.returncode, result.stderr), (DONE, ""), arguments)
+
+    def test_files_are_written_and_checks_made_for_a_reader_that_has_enough(self):
+        test = "a" * 200 + ".pfm"  # two dozen names are more than stdio keeps for later
+        for seed, image in ((1, "reference.pfm"), (2, test)):
+            self.run_wavecrest("render", "cornell-mirror", *SMALL, "--seed", seed, "-o", image)
+        images = ["reference.pfm", *[test] * 24]
+        result = self.run_into_closed_pipe("compare", *images, "--max-rmse", "0", "--html", "p.html")
+        self.assertEqual(result.returncode, CHECK, result.stderr)
+        self.assertTrue((self.folder / "p.html").exists())
 
     def test_a_full_disk_is_one(self):
         with open("/dev/full", "w", encoding="utf-8") as full:

@@ -16,7 +16,7 @@ import unittest
 from harness import INTERRUPTED
 from view_harness import Viewed
 
-DURATION = float(os.environ.get("DURATION", "10"))
+DURATION = float(os.environ.get("DURATION", "5"))
 CLIENTS = 100
 MOST_LOST = 0.01  # of the render's time, as CPU time of the thread that answers
 MOST_MEMORY = 8 << 20

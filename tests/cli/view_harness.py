@@ -7,7 +7,7 @@ import urllib.parse
 
 from harness import CommandTest
 
-SMALL = ["cornell-diffuse", "--size", "32x24", "--threads", "2"]
+SMALL = ["cornell-diffuse", "--size", "32x24", "--threads", "1"]
 
 
 class Page:

@@ -30,7 +30,7 @@ class ViewTest(Viewed):
         self.end(process, INTERRUPTED)
 
     def test_events_tell_of_the_render_to_its_end(self):
-        process, page = self.started("render", *SMALL, "--spp", "160000", "--view", "0", "-o", "image.pfm")
+        process, page = self.started("render", *SMALL, "--spp", "40000", "--view", "0", "-o", "image.pfm")
         events = list(page.events())
         bytes_of_image = page.get("/image")[1]
         self.end(process, DONE)
@@ -41,7 +41,7 @@ class ViewTest(Viewed):
         seconds = [look["seconds"] for look in looks]
         self.assertEqual(seconds, sorted(seconds))
         self.assertEqual([look["last"] for look in looks], [False] * (len(looks) - 1) + [True])
-        self.assertEqual((looks[-1]["iterations"], looks[-1]["fraction"]), (160000, 1))
+        self.assertEqual((looks[-1]["iterations"], looks[-1]["fraction"]), (40000, 1))
         for look in looks[1:]:
             self.assertTrue(look["paths_per_second"] is None or look["paths_per_second"] > 0)
         errors = [look["error"] for look in looks if "error" in look]

@@ -40,6 +40,13 @@ TEST(CampaignOptions, severalWordsAreForLists) {
   }
 }
 
+TEST(CampaignOptions, snapshotsAreNoLessThanATenthOfAMillisecondApart) {
+  EXPECT_EQ(refusalOfCampaign(campaignOf("--snapshot-every", {"1e-9s"})),
+            "--snapshot-every 1e-9s: expected log, or 0.1ms or more");
+  api::CampaignOptions options = campaignOf("--snapshot-every", {"0.1ms"});
+  EXPECT_NO_THROW(begunCampaign(options));
+}
+
 TEST(CampaignOptions, cropsArePartsOfPicturesOfTheCampaign) {
   const auto refusal = [](const std::string& crop) {
     api::CampaignOptions options = campaignOf("--crop", {"cornell-diffuse:1,2,3x4", crop});
@@ -120,6 +127,27 @@ TEST(CampaignOptions, whatACampaignHasMayBeGivenAgain) {
   EXPECT_EQ(settings.methods.size(), 2u);
   EXPECT_EQ(settings.seeds, 2u);
   EXPECT_TRUE(settings.keepImages);
+}
+
+TEST(CampaignOptions, whatACampaignHasByDefaultMayBeSaid) {
+  const Defining begun = {{"scenes", {"cornell-diffuse"}}};
+  EXPECT_NO_THROW(resumed(begun, {{"--profile", {"quick"}}, {"--precision", {"float"}}}));
+  EXPECT_THROW(resumed(begun, {{"--precision", {"double"}}}), UsageError);
+}
+
+// A profile may choose another radius than when the campaign began.
+TEST(CampaignOptions, whatTheProfileChoseWhenTheCampaignBeganMayBeSaid) {
+  const test::TemporaryFolder folder;
+  const api::CampaignOptions first{.defining = {{"scenes", {"cornell-diffuse"}}, {"--methods", {"vcm"}}},
+                                   .out = folder.folder().string()};
+  const CampaignSettings begun = campaignSettings(first);
+  std::map<std::string, std::string> keys = campaignKeys(first, begun);
+  keys["radius"] = "0.002";
+  ResultsStore(resultsFile(begun)).putCampaign(keys);
+  api::CampaignOptions same{.defining = {{"--radius", {"0.002"}}}, .out = first.out, .resume = true};
+  EXPECT_EQ(begunCampaign(same).render.radius, 0.002);
+  api::CampaignOptions other{.defining = {{"--radius", {"0.003"}}}, .out = first.out, .resume = true};
+  EXPECT_THROW(begunCampaign(other), UsageError);
 }
 
 // Size and scenes come from the results file.

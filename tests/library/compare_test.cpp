@@ -1,4 +1,5 @@
-// Comparisons of the interface: exposures and sRGB values that are refused, and how many bits the codes of images have.
+// Comparisons of the interface: exposures, sRGB values and maps that are refused, and how many bits the codes of images
+// have.
 #include "wavecrest/compare.h"
 
 #include <gtest/gtest.h>
@@ -54,6 +55,15 @@ TEST(Comparisons, codesOf16BitsKeepTheirPrecision) {
   const Image a = constant(32768 / 65535.0f, true), b = constant(32828 / 65535.0f, true);
   EXPECT_NEAR(rmse(a, b), 60 / 65535.0, 1e-7);
   EXPECT_NEAR(rmse(constant(128 / 255.0f, true), b), 128 / 255.0 - 32828 / 65535.0, 1e-7);
+}
+
+TEST(FalseColours, areOfOneValueForEachPixel) {
+  EXPECT_EQ(falseColours({0, 0, 1, 1}, 2, 2, 1).size(), 12u);
+  EXPECT_EQ(refusalOf<Error>([] {
+              falseColours({0, 0, 1}, 2, 2, 1);
+            }),
+            "map: has 3 values; expected one for each of its 2 x 2 pixels, and at least one");
+  EXPECT_THROW(falseColours({}, 0, 0, 1), Error);
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ TEST(UntilSsim, endsAtTheFirstLookThatResemblesTheReference) {
   const SsimNow now = renderUntilSsim(*session, settingsOf(Method::pt, 1), {.reference = reference, .ssim = 0.9});
   EXPECT_TRUE(now.reached);
   EXPECT_EQ(now.ssim, ssimAfter(scene, reference, now.iterations));
-  EXPECT_GE(now.ssim, 0.9);
+  ASSERT_TRUE(now.ssim);
+  EXPECT_GE(*now.ssim, 0.9);
   ASSERT_GT(now.iterations, 8u);
   EXPECT_LT(ssimAfter(scene, reference, now.iterations * 3 / 4), 0.9);  // looks are a quarter apart at most
 }
@@ -46,6 +47,18 @@ TEST(UntilSsim, endsAtTheIterationsOfTheSettingsUnreached) {
   EXPECT_FALSE(now.reached);
   EXPECT_EQ(now.iterations, 7u);
   EXPECT_EQ(now.ssim, ssimAfter(scene, reference, 7));
+}
+
+TEST(UntilSsim, isNotKnownBeforeTheFirstWholeImage) {
+  const Scene scene = smallBox(32, 24);
+  const PreparedReference reference = referenceOf(scene);
+  RenderSettings settings = settingsOf(Method::pt, 1);
+  settings.seconds = 0;
+  const auto session = Session::create(scene, settings);
+  const SsimNow now = renderUntilSsim(*session, settings, {.reference = reference, .ssim = 1e-9});
+  EXPECT_EQ(now.iterations, 0u);
+  EXPECT_FALSE(now.ssim);
+  EXPECT_FALSE(now.reached);
 }
 
 TEST(UntilSsim, goesOnWithTheFirstLookThatIsAhead) {
