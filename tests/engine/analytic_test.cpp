@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "tests/effort.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"
 
@@ -10,16 +11,16 @@ namespace wavecrest {
 namespace {
 
 constexpr uint32_t kSide = 24;
-constexpr uint64_t kIterations = 24;
 
 class AnalyticTest : public testing::TestWithParam<Variant> {
  protected:
   RenderSettings settings() const { return settingsFor(GetParam()); }
+  static uint64_t iterations() { return samples(24, 6); }
 
   // Every pixel of the scene has the same radiance.
   void expectEverywhere(const Scene& scene, const RenderSettings& chosen, double radiance, const std::string& where) {
     expectTruth(
-        renderSeeds(scene, chosen, kIterations),
+        renderSeeds(scene, chosen, iterations()),
         [&](uint32_t, uint32_t, size_t) -> std::optional<double> { return radiance; }, where);
   }
 };
@@ -40,7 +41,7 @@ TEST_P(AnalyticTest, whiteFurnace) {
       if (std::abs(radius - edge) < 0.8) return std::nullopt;
       return radius < edge ? rho : 1.0;
     };
-    expectTruth(renderSeeds(scene, settings(), kIterations), truth, "albedo " + std::to_string(rho));
+    expectTruth(renderSeeds(scene, settings(), iterations()), truth, "albedo " + std::to_string(rho));
   }
 }
 

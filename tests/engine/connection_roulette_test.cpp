@@ -8,6 +8,7 @@
 
 #include "engine/pilot/pilot_paths.h"
 #include "engine/pilot/typical_brightness.h"
+#include "tests/effort.h"
 #include "tests/engine/bidirectional_walk.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"
@@ -77,9 +78,9 @@ TEST(ConnectionRoulette, changesNoMean) {
   for (const Method method : {Method::bpt, Method::vcm}) {
     RenderSettings settings = settingsWithRoulette(method);
     settings.connectionRoulette = 0;
-    const SeedMeans all = renderSeeds(scene, settings, 24);
+    const SeedMeans all = renderSeeds(scene, settings, samples(24, 6));
     settings.connectionRoulette = 1;
-    expectSameTruth(all, renderSeeds(scene, settings, 24, 2000), std::string(toString(method)));
+    expectSameTruth(all, renderSeeds(scene, settings, samples(24, 6), 2000), std::string(toString(method)));
   }
 }
 

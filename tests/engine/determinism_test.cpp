@@ -11,7 +11,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr uint32_t kWidth = 40, kHeight = 27;  // 1080 pixels: no multiple of any wave size below
+constexpr uint32_t kUnevenWidth = 40, kUnevenHeight = 27;  // 1080 pixels: no multiple of any wave size below
 constexpr uint64_t kFewIterations = 3;
 
 bool sameBits(const RgbImage& a, const RgbImage& b) {
@@ -56,7 +56,7 @@ std::vector<MethodVariant> methodVariants() {
 
 class DeterminismTest : public testing::TestWithParam<MethodVariant> {
  protected:
-  DeterminismTest() : scene_(sceneFile("cornell-diffuse", kWidth, kHeight)) {}
+  DeterminismTest() : scene_(sceneFile("cornell-diffuse", kUnevenWidth, kUnevenHeight)) {}
 
   RenderSettings settings() const {
     RenderSettings settings = settingsFor(GetParam().variant);
@@ -116,7 +116,7 @@ TEST_P(DeterminismTest, seedsDiffer) {
   chosen.radius = 0.05;  // so that pure merging finds photons at most pixels
   const RgbImage first = render(scene_, chosen, kFewIterations);
   chosen.seed = 6;
-  EXPECT_GT(differentPixels(first, render(scene_, chosen, kFewIterations)), kWidth * kHeight / 2);
+  EXPECT_GT(differentPixels(first, render(scene_, chosen, kFewIterations)), kUnevenWidth * kUnevenHeight / 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Engine, DeterminismTest, testing::ValuesIn(methodVariants()),
@@ -133,7 +133,7 @@ class IterationsTogetherTest : public testing::TestWithParam<SamplerKind> {
     settings_.seed = 5;
     settings_.firstIteration = 5;
   }
-  const Scene scene_ = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const Scene scene_ = sceneFile("cornell-diffuse", kUnevenWidth, kUnevenHeight);
   RenderSettings settings_ = settingsFor({Precision::floating, GetParam(), Accel::automatic});
 };
 
@@ -149,11 +149,11 @@ TEST_P(IterationsTogetherTest, stopsByTheClockChangeNothing) {
   for (int stop = 1; stop <= 20; ++stop) {
     // From where it stands: sanitized waves take so long that the first would be over time for all that follow.
     session->renderUntil(kMany, session->progressSeconds() + 1e-3);
-    partial += session->statistics().paths % (kWidth * kHeight) != 0 ? 1 : 0;
+    partial += session->statistics().paths % (kUnevenWidth * kUnevenHeight) != 0 ? 1 : 0;
   }
   EXPECT_GT(partial, 0u) << "the clock never stopped within an iteration";
   session->renderUntil(kMany, std::nullopt);
-  EXPECT_EQ(session->statistics().paths, kMany * kWidth * kHeight);
+  EXPECT_EQ(session->statistics().paths, kMany * kUnevenWidth * kUnevenHeight);
   EXPECT_TRUE(sameBits(render(scene_, settings_, kMany), session->film().resolve()));
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/compile/compiled_scene.h"
 #include "engine/scene/vector_math.h"
+#include "tests/effort.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"
 #include "tests/load/scene_file.h"
@@ -68,7 +69,7 @@ class DirectLightTest : public testing::TestWithParam<Variant> {
       }
       return kAlbedo / std::numbers::pi * kRadiance[c] * mean;
     };
-    expectTruth(renderSeeds(scene, settings, 32), truth, "direct light");
+    expectTruth(renderSeeds(scene, settings, samples(32, 8)), truth, "direct light");
   }
 };
 
@@ -174,9 +175,9 @@ TEST(DirectLight, ofTexturedLightsIsTheSameHoweverTheyAreSampled) {
   settings.isa = bestIsa();
   settings.limits.maxDepth = 2;
   settings.method = Method::pt;
-  const SeedMeans byPaths = renderSeeds(scene, settings, 64);
+  const SeedMeans byPaths = renderSeeds(scene, settings, samples(64, 16));
   settings.method = Method::lt;
-  expectSameTruth(byPaths, renderSeeds(scene, settings, 64), "textured lights");
+  expectSameTruth(byPaths, renderSeeds(scene, settings, samples(64, 16)), "textured lights");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "engine/film/spread_sums.h"
+#include "tests/effort.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/saved_state.h"
 #include "tests/engine/test_scenes.h"
@@ -244,9 +245,9 @@ TEST(SpreadRenders, expectTheSampledImageWithLessNoise) {
   for (const ReconstructionFilter filter : {ReconstructionFilter::gaussian, ReconstructionFilter::tent}) {
     const Scene scene = filteredScene(20, 12, filter);
     RenderSettings settings = settingsFor({Precision::floating, SamplerKind::independent, Accel::automatic});
-    const SeedMeans spread = renderSeeds(scene, settings, 64);
+    const SeedMeans spread = renderSeeds(scene, settings, samples(64, 32));
     settings.filterMode = FilterMode::sample;
-    const SeedMeans sampled = renderSeeds(scene, settings, 64, 2000);
+    const SeedMeans sampled = renderSeeds(scene, settings, samples(64, 32), 2000);
     expectSameTruth(spread, sampled, std::string(kFilterNames[static_cast<size_t>(filter)]));
     double spreadVariance = 0, sampledVariance = 0;
     for (size_t i = 0; i < spread.error.size(); ++i) {

@@ -1,6 +1,7 @@
 // Russian roulette and the depth limit: where they may end paths, and that they change no mean.
 #include <gtest/gtest.h>
 
+#include "tests/effort.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"
 
@@ -15,10 +16,10 @@ TEST(Roulette, changesNoMeanWhereverItBegins) {
   const Scene scene = sceneFile("cornell-diffuse", kRoomWidth, kRoomHeight);
   RenderSettings settings = defaults();
   settings.limits.rouletteDepth = 20;
-  const SeedMeans latest = renderSeeds(scene, settings, 48);
+  const SeedMeans latest = renderSeeds(scene, settings, samples(48, 12));
   for (const uint32_t depth : {1u, 5u}) {
     settings.limits.rouletteDepth = depth;
-    const SeedMeans earlier = renderSeeds(scene, settings, 48, 2000);  // independent of the others
+    const SeedMeans earlier = renderSeeds(scene, settings, samples(48, 12), 2000);  // independent of the others
     expectSameTruth(latest, earlier, "roulette from vertex " + std::to_string(depth));
   }
 }
@@ -31,11 +32,11 @@ TEST(Roulette, changesNoMeanWhateverItFollows) {
     settings.method = method;
     settings.limits.rouletteDepth = 2;
     settings.roulette = Roulette::throughput;
-    const SeedMeans byThroughput = renderSeeds(scene, settings, 16);
+    const SeedMeans byThroughput = renderSeeds(scene, settings, samples(16, 4));
     uint64_t seed = 2000;
     for (const Roulette roulette : {Roulette::albedo, Roulette::efficiency}) {
       settings.roulette = roulette;
-      expectSameTruth(byThroughput, renderSeeds(scene, settings, 16, seed += 1000),
+      expectSameTruth(byThroughput, renderSeeds(scene, settings, samples(16, 4), seed += 1000),
                       std::string(toString(method)) + ", " + std::to_string(static_cast<int>(roulette)));
     }
   }
@@ -50,10 +51,10 @@ TEST(Roulette, changesNoMeanOfSmallAndLargeProbabilities) {
       RenderSettings settings = defaults();
       settings.method = method;
       settings.limits.rouletteDepth = 1;
-      const SeedMeans byThroughput = renderSeeds(scene, settings, 32);
+      const SeedMeans byThroughput = renderSeeds(scene, settings, samples(32, 8));
       for (const Roulette roulette : {Roulette::albedo, Roulette::efficiency}) {
         settings.roulette = roulette;
-        expectSameTruth(byThroughput, renderSeeds(scene, settings, 32, 3000),
+        expectSameTruth(byThroughput, renderSeeds(scene, settings, samples(32, 8), 3000),
                         std::string(toString(method)) + ", albedo " + albedo);
       }
     }

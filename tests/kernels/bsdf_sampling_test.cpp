@@ -1,4 +1,6 @@
 // Sampling of BSDFs against their densities, on every instruction set and precision.
+#include <utility>
+
 #include "tests/effort.h"
 #include "tests/kernels/bsdf_cases.h"
 #include "tests/kernels/isa_test.h"
@@ -29,6 +31,22 @@ double nodeWeight(size_t i) {  // sums to 1
   return (i % 3 == 1 ? 4.0 / 9 : 5.0 / 18) / kParts;
 }
 
+// A node of the cells along one side of the grid; weight: of the rule, times the step of the angle.
+struct AngleNode {
+  double sine, cosine, weight;
+};
+
+// angleAt(x): the angle at x cells from the side's beginning, and its derivative.
+template <class AngleAt>
+std::vector<AngleNode> angleNodes(size_t cells, AngleAt&& angleAt) {
+  std::vector<AngleNode> nodes;
+  for (size_t i = 0; i < cells * kNodes; ++i) {
+    const auto [angle, derivative] = angleAt(static_cast<double>(i / kNodes) + nodePosition(i % kNodes));
+    nodes.push_back({std::sin(angle), std::cos(angle), nodeWeight(i % kNodes) * derivative});
+  }
+  return nodes;
+}
+
 struct Integrals {
   std::vector<double> pdf;         // over each cell
   double total = 0;                // of pdf
@@ -51,23 +69,29 @@ Integrals integrate(const BsdfEntries& entries, const BsdfQuery& query, const Di
   integrals.pdf.resize(kThetaCells * kPhiCells);
   constexpr double kThetaStep = std::numbers::pi / kThetaCells, kStep = 2.0 / kPhiCells;
   const double mirrorPhi = mirrorAzimuth(wi);
+  const std::vector<AngleNode> azimuths = angleNodes(kPhiCells, [&](double position) {
+    const double s = position * kStep - 1;
+    return std::pair{mirrorPhi + std::numbers::pi * s * s * s, kStep * 3 * std::numbers::pi * s * s};
+  });
+  const std::vector<AngleNode> thetas = angleNodes(kThetaCells, [&](double position) {
+    return std::pair{position * kThetaStep, kThetaStep};
+  });
   std::vector<Direction> gens;
   std::vector<double> weights;
+  const std::vector<Direction> fixes(kPhiCells * kNodes * kNodes, wi);
   for (size_t row = 0; row < kThetaCells; ++row) {
     gens.clear();
     weights.clear();
     for (size_t column = 0; column < kPhiCells; ++column) {
       for (size_t i = 0; i < kNodes; ++i) {
-        const double theta = (static_cast<double>(row) + nodePosition(i)) * kThetaStep;
+        const AngleNode& theta = thetas[row * kNodes + i];
         for (size_t j = 0; j < kNodes; ++j) {
-          const double s = (static_cast<double>(column) + nodePosition(j)) * kStep - 1;
-          gens.push_back(fromAngles(theta, mirrorPhi + std::numbers::pi * s * s * s));
-          weights.push_back(nodeWeight(i) * nodeWeight(j) * kThetaStep * std::sin(theta) * kStep * 3 *
-                            std::numbers::pi * s * s);
+          const AngleNode& phi = azimuths[column * kNodes + j];
+          gens.push_back({theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine});
+          weights.push_back(theta.weight * theta.sine * phi.weight);
         }
       }
     }
-    const std::vector<Direction> fixes(gens.size(), wi);
     const auto values = evaluate(entries, query, fixes, gens);
     for (size_t n = 0; n < gens.size(); ++n) {
       integrals.pdf[row * kPhiCells + n / (kNodes * kNodes)] += values[n].pdf * weights[n];

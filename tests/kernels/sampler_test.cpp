@@ -34,14 +34,15 @@ TEST_P(SamplerTest, philoxMatchesPublishedVectors) {
 
 // Bit for bit the scalar twin's numbers, whatever the width; nothing written past the padded columns.
 TEST_P(SamplerTest, numbersDoNotDependOnTheInstructionSet) {
-  struct Case {
+  struct Drawn {
     SamplerKind kind;
     Stream stream;
     uint32_t block;
   };
-  for (const Case& drawn : {Case{SamplerKind::independent, Stream::light, 9},
-                            Case{SamplerKind::sobol, Stream::camera, 1}, Case{SamplerKind::sobol, Stream::camera, 13},
-                            Case{SamplerKind::sobol, Stream::light, 1}, Case{SamplerKind::sobol, Stream::light, 9}}) {
+  for (const Drawn& drawn :
+       {Drawn{SamplerKind::independent, Stream::light, 9}, Drawn{SamplerKind::sobol, Stream::camera, 1},
+        Drawn{SamplerKind::sobol, Stream::camera, 13}, Drawn{SamplerKind::sobol, Stream::light, 1},
+        Drawn{SamplerKind::sobol, Stream::light, 9}}) {
     const SamplerEntries& kernel = entries<SamplerEntries>();
     SamplerSettings sampler = settings(drawn.kind, 77);
     sampler.lightPaths = 5000;

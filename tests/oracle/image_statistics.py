@@ -3,8 +3,8 @@
 Pixels are averaged in tiles of 8 x 8 (closer to a normal distribution, and fewer tests), per channel. Each tile is a
 two-sample t test without assuming equal variances (Welch 1947) over the independent renders, Bonferroni-corrected; the
 whole image's mean is another. Together they reject equal renderers with probability FALSE_ALARM_RATE at most: the tiles
-get one half of it, the three channel means the other. A t distribution, not a normal one: with 16 renders its tail at the
-corrected level is far heavier, and a normal z would cry wolf.
+get one half of it, the three channel means the other. A t distribution, not a normal one: with 8 or 16 renders its tail
+at the corrected level is far heavier, and a normal z would cry wolf.
 """
 
 import dataclasses

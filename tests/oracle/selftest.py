@@ -168,15 +168,18 @@ class Kept(unittest.TestCase):
         generator = np.random.default_rng(9)
         ours, theirs = noise(generator, 16), noise(generator, 16)
         mitsuba = mock.Mock()
-        renders = {"render_seeds": mock.Mock(return_value=ours)}
+        render_seeds = mock.Mock(side_effect=lambda program, run, seeds, shape: ours[: len(seeds)])
         case = oracle_test.Case("case", pathlib.Path("case.xml"), 1, ["pt"])
         for pictures, equal in ((theirs, True), (theirs + 1, False)):
             mitsuba.kept.return_value = pictures
-            with mock.patch.multiple(renderers, **renders):
+            with mock.patch.object(renderers, "render_seeds", render_seeds):
                 found = oracle_test.same_picture(mock.Mock(), case, "pt", mitsuba, theirs + 2, self.folder)
             self.assertEqual(found, equal)
         written = {call.args[0].name: call.args[1] for call in mitsuba.write_exr.call_args_list}
         np.testing.assert_array_equal(written["mitsuba.exr"], pictures.mean(0))
+        np.testing.assert_array_equal(written["wavecrest.exr"], ours.mean(0), "all seeds decide")
+        rendered = [call.args[2] for call in render_seeds.call_args_list]
+        self.assertEqual(rendered, 2 * [oracle_test.OUR_SEEDS, oracle_test.SEEDS])
 
 
 class Written(unittest.TestCase):

@@ -5,9 +5,11 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "bench/film_image.h"
+#include "bench/score/expected.h"
 #include "bench/score/expected_pictures.h"
 #include "bench/score/score.h"
 #include "tests/bench/small_box.h"
@@ -51,18 +53,24 @@ ImageVerdict judge(const Image& image, const ScoreEntry& entry) {
 
 class CommittedPictureTest : public testing::TestWithParam<std::string> {};
 
-// Every method on every scene of the small workload. Only every fourth entry is rendered by another precision and seed,
-// all of them with WAVECREST_THOROUGH. The number of methods is odd, so these entries are of all methods.
+// Every method on every scene of the small workload, whose image is the committed one where its hash is known. Only
+// every fourth entry is rendered by another precision and seed, all of them with WAVECREST_THOROUGH. The number of
+// methods is odd, so these entries are of all methods.
 TEST_P(CommittedPictureTest, acceptsThePrecisionOfItsImageAndRefusesOthers) {
   static_assert(kScoredMethods % 2 == 1);
   const size_t step = 4 / samples(4, 1);
   const std::vector<ScoreEntry> workload = workloadOf(ScoreSize::small);
+  const ImageHashes hashes = ImageHashes::committed();
   for (size_t number = 0; number < workload.size(); ++number) {
     const ScoreEntry& entry = workload[number];
     if (entry.scene != GetParam()) continue;
     SCOPED_TRACE(toString(entry.method));
     const Scene scene = sceneOf(entry);
     const Image own = validatedImage(scene, entry, bestIsa(), 2);
+    const std::optional<uint64_t> hash = hashes.find(ScoreSize::small, hashGroup(bestIsa()), entry);
+    if (hash) {
+      EXPECT_EQ(hashImage(own.pixels), *hash) << "bench/score/remake-hashes build/release/wavecrest";
+    }
     EXPECT_EQ(judge(own, entry).validity, Validity::tolerated) << judge(own, entry).text;
     // The same image, brighter or darker by 2 %.
     for (const float factor : {1.02f, 0.98f}) {
