@@ -5,6 +5,7 @@
 // is 1 already. Raster positions of paths that are joined with the lens; events of the rows that are kept and left
 // anew.
 #include "kernels/endpoints/camera_lanes.h"
+#include "kernels/extend/offset.h"
 #include "kernels/mutate/path_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -69,7 +70,8 @@ void joinPaths(const StageContext<typename P::Storage>& context, Wave<typename P
     segment = select(infinite, y * Real(3 * scene.radius), segment);
     const Real zOffset = gather(v.offset, zAt), yOffset = gather(v.offset, yAt);
     const Real apart = Real(4) * (zOffset + yOffset);
-    Mask lit = joins & (length2(segment) > apart * apart);
+    const Real dist2 = length2(segment);
+    Mask lit = joins & (dist2 > apart * apart);
     // Where the eye's vertex is the lens, the edge decides the film position.
     const Mask toLens = joins & (lightRow + one == edges);
     if (any(toLens)) {
@@ -81,7 +83,8 @@ void joinPaths(const StageContext<typename P::Storage>& context, Wave<typename P
     }
     // A shadow ray from z to y, offset from both surfaces.
     const Vec3<Real> origin = offsetOrigin(z, normalAt(v, zAt), zOffset, segment);
-    const Vec3<Real> near = offsetOrigin(y, normalAt(v, yAt), yOffset, -segment);
+    const Real endOffset = mulAdd(sqrt(dist2), Real(kEndGamma), yOffset);
+    const Vec3<Real> near = offsetOrigin(y, normalAt(v, yAt), endOffset, -segment);
     const Vec3<Real> end = select(infinite, z + segment, near);
     const Vec3<Real> visible{Real(1), Real(1), Real(1)};
     appendShadowRays(shadow, lit, origin, end, visible, lane, out);

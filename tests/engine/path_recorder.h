@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "kernels/extend/offset.h"
 #include "tests/engine/bidirectional_walk.h"
 #include "tests/engine/path_density.h"
 #include "tests/kernels/stage_waves.h"
@@ -105,7 +106,7 @@ class PathRecorder : public WalkVisitor<S> {
       const Double3 segment = shadowSegment(wave, i), end = shadowOrigin(wave, i) + segment;
       FullPath path = length(segment) > 2.5 * walk_.scene().radius
                           ? startAtInfinity(onlyInfiniteLight(), normalized(segment))
-                          : startOn(lightAt(end), withoutOffset(end));
+                          : startOn(lightAt(end), withoutOffset(end, length(segment)));
       appendCameraSide(path, lane, depth);
       push(1, false, path, shadowValue(wave, i));
     }
@@ -207,10 +208,12 @@ class PathRecorder : public WalkVisitor<S> {
     }
     return best;
   }
-  // Shadow rays end a little off an area light.
-  Double3 withoutOffset(const Double3& end) const {
-    const uint32_t light = lightAt(end);
-    return end - lightNormal(light, end) * double{walk_.scene().lights[light].offset};
+  // Shadow rays of this length end a little off an area light.
+  Double3 withoutOffset(const Double3& end, double distance) const {
+    const uint32_t index = lightAt(end);
+    const auto& light = walk_.scene().lights[index];
+    const bool hasArea = light.kind <= static_cast<uint32_t>(LightKind::sphere);
+    return end - lightNormal(index, end) * (hasArea ? double{light.offset} + kEndGamma * distance : 0);
   }
   uint32_t onlyInfiniteLight() const {
     for (uint32_t i = 0; i < walk_.scene().lightCount; ++i) {
