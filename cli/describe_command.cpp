@@ -40,7 +40,7 @@ std::vector<CompletionWords> completionWords() {
   for (const Profile& profile : profiles()) profileNames.push_back(profile.name);
   for (const SamplerKind kind : kAllSamplerKinds) samplers.push_back(toString(kind));
   std::vector<std::string_view> samplersOrAuto = samplers;
-  samplersOrAuto.push_back("auto");
+  samplersOrAuto.emplace_back("auto");
   for (const Metric& metric : metricList()) metrics.push_back(metric.name);
   // A reference's method may also be chosen by the program.
   std::vector<std::string_view> referenceMethods{"auto"};
