@@ -41,7 +41,8 @@ template <class AngleAt>
 std::vector<AngleNode> angleNodes(size_t cells, AngleAt&& angleAt) {
   std::vector<AngleNode> nodes;
   for (size_t i = 0; i < cells * kNodes; ++i) {
-    const auto [angle, derivative] = angleAt(static_cast<double>(i / kNodes) + nodePosition(i % kNodes));
+    const size_t cell = i / kNodes;
+    const auto [angle, derivative] = angleAt(static_cast<double>(cell) + nodePosition(i % kNodes));
     nodes.push_back({std::sin(angle), std::cos(angle), nodeWeight(i % kNodes) * derivative});
   }
   return nodes;
