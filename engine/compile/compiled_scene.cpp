@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-#include "engine/compile/affine.h"
+#include "engine/compile/float_range.h"
 #include "engine/compile/materials.h"
 #include "engine/compile/scene_geometry.h"
 #include "engine/compile/tabulate.h"
@@ -165,76 +165,6 @@ struct NearBox {
   }
 };
 
-// Rays are intersected in single precision, and numbers below 1e-38 are flushed to zero. The test of a sphere
-// multiplies two lengths. That of a face multiplies two edges and the height of the ray's origin above the face: at the
-// smallest radius R, edges of 1e-4 R and heights of 1e-6 R are met.
-constexpr double kLargestRadius = 2e12, kSmallestRadius = 1e-8, kSmallestSphere = 1e-18;
-// Largest product of the squared radius and rayReach. Scenes have a reach of up to nine radii (originOf) without the
-// eye and lights.
-constexpr double kLargestProduct = 1e38;
-// Of an instance: directions in its group are shorter by up to this, and float has to hold the square of their length.
-constexpr double kLargestStretch = 1e18;
-
-bool isInRange(double radius) { return radius >= kSmallestRadius && radius <= kLargestRadius; }
-
-// Of each group, the least scale of its copies; infinite where there are none.
-std::vector<double> leastScales(const Scene& scene) {
-  std::vector<double> scales(scene.groups.size(), std::numeric_limits<double>::infinity());
-  for (const Instance& instance : scene.instances) {
-    double& least = scales[instance.group];
-    least = std::min(least, Affine(instance.toWorld).scale());
-  }
-  return scales;
-}
-
-// Throws SceneError where the scene is too large or too small, or a group in its space, or a sphere too small. radius:
-// of the world; groupRadii: SceneGeometry's. What is not a number is refused as well.
-void checkRange(const Scene& scene, double radius, const std::vector<double>& groupRadii, bool keeps) {
-  if (!isInRange(radius)) {
-    throw SceneError(SourceLocation{scene.name}, fmt::format("the scene's radius is {:g}; expected {:g} to {:g}",
-                                                             radius, kSmallestRadius, kLargestRadius));
-  }
-  for (size_t i = 0; i < groupRadii.size(); ++i) {
-    if (groupRadii[i] == 0 || isInRange(groupRadii[i])) continue;
-    throw SceneError(scene.groups[i].source,
-                     fmt::format("the radius of shapegroup {} is {:g}; expected {:g} to {:g}, or `--instances expand`",
-                                 scene.groups[i].id, groupRadii[i], kSmallestRadius, kLargestRadius));
-  }
-  // Copies of spheres have the scale of their instance.
-  const std::vector<double> scales = keeps ? std::vector<double>(scene.groups.size(), 1.0) : leastScales(scene);
-  for (const Shape& shape : scene.shapes) {
-    const auto* sphere = std::get_if<Sphere>(&shape.kind);
-    if (sphere == nullptr || sphere->radius == 0) continue;
-    const double size = sphere->radius * (shape.group == kNone ? 1 : scales[shape.group]);
-    if (size >= kSmallestSphere) continue;
-    throw SceneError(shape.source,
-                     fmt::format("a sphere's radius is {:g}; expected at least {:g}", size, kSmallestSphere));
-  }
-}
-
-// The greatest length that a transform may give a unit vector, or up to the square root of 3 times that.
-double greatestStretch(const Double3 (&rows)[3]) {
-  return std::sqrt(dot(rows[0], rows[0]) + dot(rows[1], rows[1]) + dot(rows[2], rows[2]));
-}
-
-// Throws SceneError where single precision does not hold what is computed in the space of an instance's group: the
-// square of a ray's direction there, and its product with two edges. Shadow rays span up to three radii of the scene.
-void checkInstances(const Scene& scene, double radius, const std::vector<double>& groupRadii) {
-  for (const Instance& instance : scene.instances) {
-    const double groupRadius = groupRadii[instance.group];
-    if (groupRadius == 0) continue;
-    const Affine toWorld(instance.toWorld);
-    const double stretch = greatestStretch(toWorld.linear);
-    const double longest = greatestStretch(toWorld.inverse) * std::max(1.0, 3 * radius);
-    const double largest = longest * std::max(longest, groupRadius * groupRadius);
-    if (stretch <= kLargestStretch && largest <= kLargestProduct) continue;
-    throw SceneError(instance.source,
-                     fmt::format("an instance makes {:g} of the radius {:g} of shapegroup {}, which is beyond single "
-                                 "precision; expected `--instances expand`",
-                                 groupRadius * toWorld.scale(), groupRadius, scene.groups[instance.group].id));
-  }
-}
-
 // Throws SceneError where the eye or a light is too far from a large scene for the test of a face. origins: of rays.
 void checkReach(const Scene& scene, const BoundingSphere& bounds, const Box& origins) {
   const double radius2 = bounds.radius * bounds.radius;
@@ -354,9 +284,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
     geometry.moveTo(origin);
     bounds = geometry.bounds<S>();
   }
-  const std::vector<double> groupRadii = geometry.groupRadii();
-  checkRange(scene, bounds.radius, groupRadii, keeps);
-  checkInstances(scene, bounds.radius, groupRadii);
+  checkFloatRange(scene, bounds.radius, geometry.groupRadii(), keeps);
   compiled->bounds = bounds;
   SceneView<S>& view = compiled->view;
   view.camera = compileCamera(scene.sensor, scene.film, origin);
