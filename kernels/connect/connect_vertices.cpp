@@ -13,7 +13,7 @@
 
 #include "kernels/columns/light_vertices.h"
 #include "kernels/connect/roulette_lanes.h"
-#include "kernels/extend/offset.h"
+#include "kernels/extend/offset_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/vertex_row_lanes.h"
@@ -164,8 +164,7 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
   }
   if (none(lit)) return out;
   const Vec3<Real> origin = offsetOrigin(z.position, z.normal, z.offset, towards);
-  const Real endOffset = mulAdd(dist2 * inverseDistance, Real(kEndGamma), y.offset);
-  const Vec3<Real> end = offsetOrigin(y.position, y.normal, endOffset, -towards);
+  const Vec3<Real> end = offsetOrigin(y.position, y.normal, endOffset(y.offset, dist2 * inverseDistance), -towards);
   appendShadowRays(shadow, lit, origin, end, contribution, load(lanes), out);
   if (scene.passages != nullptr) append(wLight + wCamera, lit, shadow.others, out);
   return out + countTrue(lit);

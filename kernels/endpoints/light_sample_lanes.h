@@ -3,7 +3,7 @@
 
 #include "kernels/endpoints/light_lanes.h"
 #include "kernels/endpoints/scene_box_lanes.h"
-#include "kernels/extend/offset.h"
+#include "kernels/extend/offset_lanes.h"
 #include "kernels/sampling/warp_lanes.h"
 #include "kernels/surface/texture_lanes.h"
 
@@ -160,7 +160,7 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
   sample.valid = n0 > Real(0);
   sample.emissionPdf = pdfA * Real(kInvPi);  // cosine-distributed around a uniform point
   sample.delta = noLanes();
-  sample.end = mulAdd(normal, mulAdd(dist2 * inverseDistance, Real(kEndGamma), light.offset), point);
+  sample.end = mulAdd(normal, endOffset(light.offset, dist2 * inverseDistance), point);
   if constexpr (has(kFeatures, kCurvedShapes)) {
     sample.pdf = select(cone, Real(kInvPi / 2) * reciprocal(coneHeight), sample.pdf);
   }

@@ -11,9 +11,10 @@ namespace wavecrest {
 constexpr double kUnitRoundoff = 0x1p-24;
 // 7 roundings in p0 + u e1 + v e2, 5 in the plane equation at either end, and margin for a unit normal that is not.
 constexpr double kOffsetGamma = 16 * kUnitRoundoff;
-// A shadow ray also ends this much of its length off the surface at its end, along the normal: there the plane equation
-// is evaluated along a ray that starts far away. Roundings, each of at most the length: 2 in the segment, 4 in the
-// distance of the origin to the plane, 3 in the speed towards it, 5 in their quotient. Spheres have as many.
+// Relative to the length of a shadow ray: how much farther its end is moved off the surface there, along the normal.
+// The ray starts far from that surface, and its intersection with the plane rounds by its length: 2 roundings in the
+// segment, 4 in the distance of the origin to the plane, 3 in the speed towards it, 5 in their quotient. Spheres have
+// as many.
 constexpr double kEndGamma = 16 * kUnitRoundoff;
 
 // Hits are moved this far (relative to the edge) inside their quad or triangle. Rounding then cannot put a path's

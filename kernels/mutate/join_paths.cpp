@@ -5,7 +5,7 @@
 // is 1 already. Raster positions of paths that are joined with the lens; events of the rows that are kept and left
 // anew.
 #include "kernels/endpoints/camera_lanes.h"
-#include "kernels/extend/offset.h"
+#include "kernels/extend/offset_lanes.h"
 #include "kernels/mutate/path_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -83,8 +83,7 @@ void joinPaths(const StageContext<typename P::Storage>& context, Wave<typename P
     }
     // A shadow ray from z to y, offset from both surfaces.
     const Vec3<Real> origin = offsetOrigin(z, normalAt(v, zAt), zOffset, segment);
-    const Real endOffset = mulAdd(sqrt(dist2), Real(kEndGamma), yOffset);
-    const Vec3<Real> near = offsetOrigin(y, normalAt(v, yAt), endOffset, -segment);
+    const Vec3<Real> near = offsetOrigin(y, normalAt(v, yAt), endOffset(yOffset, sqrt(dist2)), -segment);
     const Vec3<Real> end = select(infinite, z + segment, near);
     const Vec3<Real> visible{Real(1), Real(1), Real(1)};
     appendShadowRays(shadow, lit, origin, end, visible, lane, out);

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "kernels/extend/inset_lanes.h"
-#include "kernels/extend/offset.h"
+#include "kernels/extend/offset_lanes.h"
 #include "kernels/lane_support.h"
 
 WAVECREST_SIMD_BEGIN
@@ -66,12 +66,6 @@ WAVECREST_INLINE SurfacePoint<typename P::Real> surfacePoint(const SceneView<typ
   // The plane equation also rounds in the components that lie in the plane.
   surface.offset = max(surface.offset, maxComponent(extent) * Real(4 * kUnitRoundoff));
   return surface;
-}
-
-// Where a ray into `direction` may start without meeting the surface of `position` again.
-template <class Real>
-WAVECREST_INLINE Vec3<Real> offsetOrigin(Vec3<Real> position, Vec3<Real> normal, Real offset, Vec3<Real> direction) {
-  return mulAdd(normal, copySign(offset, dot(normal, direction)), position);
 }
 
 WAVECREST_SIMD_END
