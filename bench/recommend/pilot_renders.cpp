@@ -18,6 +18,14 @@ double secondsBy(ClockKind clock, const Session& session, uint32_t threads) {
   return clock == ClockKind::wall ? statistics.renderSeconds : statistics.cpuSeconds / threads;
 }
 
+// Renders for so many more seconds of wall time, or until the session has these iterations. False if it stopped before
+// that time: it has its iterations, or another step of its chains would not end in time.
+bool renderFor(Session& session, std::optional<uint64_t> iterations, double seconds) {
+  const double end = session.statistics().renderSeconds + seconds;
+  session.renderUntil(iterations, end);
+  return session.statistics().renderSeconds >= end;
+}
+
 // One part: an image, how long it took, and how long it would take within a long render.
 struct Part {
   std::optional<Image> image;
@@ -30,9 +38,7 @@ Part renderPart(const Scene& scene, const RenderSettings& settings, double secon
   // The first whole image, if it comes in time. What comes before it is done once in a render.
   const double limit = kMostOverrun * seconds;
   while (!session->statistics().hasWholeImage() && now() < limit) {
-    const double end = session->statistics().renderSeconds + limit - now();
-    session->renderUntil(1, end);
-    if (session->statistics().renderSeconds < end) break;  // it has its iteration, or no time for another step
+    if (!renderFor(*session, 1, limit - now())) break;
   }
   Part part;
   const uint64_t first = session->statistics().iterations;
@@ -55,9 +61,7 @@ void renderBy(ClockKind clock, Session& session, uint32_t threads, double second
   constexpr double kEnough = 0.98;
   for (double done = secondsBy(clock, session, threads); done < kEnough * seconds;
        done = secondsBy(clock, session, threads)) {
-    const double end = session.statistics().renderSeconds + seconds - done;
-    session.renderUntil(std::nullopt, end);
-    if (session.statistics().renderSeconds < end) break;  // chains: another step does not fit in
+    if (!renderFor(session, std::nullopt, seconds - done)) break;
   }
 }
 

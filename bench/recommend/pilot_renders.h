@@ -29,8 +29,8 @@ RenderSettings referenceSettings(const RenderSettings& settings, const Reference
 PilotRender renderPilot(const Scene& scene, RenderSettings settings, uint64_t firstSeed, double seconds,
                         ClockKind clock, bool biased);
 
-// Renders for so many seconds of the clock. A session stops by wall time, of which other processes may have taken a
-// part; it stops before that where another step does not fit in.
+// Renders until `seconds` of this clock have passed, to within 2 %, or until another step of its chains would not end
+// in time. By the clock cpu a session is given more wall time where other processes have taken part of it.
 void renderBy(ClockKind clock, Session& session, uint32_t threads, double seconds);
 
 }  // namespace wavecrest
