@@ -112,4 +112,16 @@ inline std::vector<RandomRay> randomRays(size_t count, double reach, uint32_t se
   return rays;
 }
 
+// A sphere of radius 1e-8 in a group, and an instance of it.
+inline Scene tinySphere(double scale) {
+  Scene scene;
+  scene.groups.push_back({.id = "tiny", .source = {}});
+  Sphere sphere{.center = {0, 0, 0}, .radius = 1e-8};
+  sphere.toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+  addShape(scene, sphere, addDiffuse(scene, 0.5, 0.5, 0.5)).group = 0;
+  addInstance(scene, 0, placedAt({0, 0, 0}, {{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}}));
+  setCamera(scene, {0, 0, 3e-8 * scale}, 60, 8, 8);
+  return scene;
+}
+
 }  // namespace wavecrest

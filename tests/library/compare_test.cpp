@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "tests/library/refusal.h"
+#include "tests/refusal.h"
 #include "wavecrest/error.h"
 
 namespace wavecrest::api {

@@ -8,7 +8,7 @@
 
 #include "library/errors.h"
 #include "library/option_ranges.h"
-#include "tests/library/refusal.h"
+#include "tests/refusal.h"
 
 namespace wavecrest {
 namespace {

@@ -79,6 +79,11 @@ inline void expectErrorOnLine2(std::string_view body, std::string_view text) {
   expectError(sceneXml("\n" + std::string(body) + "\n" + std::string(kSensor) + std::string(kSphere)), 2, text);
 }
 
+inline const Sphere& onlySphere(const Scene& scene) {
+  EXPECT_EQ(scene.shapes.size(), 1u);
+  return std::get<Sphere>(scene.shapes.at(0).kind);
+}
+
 // A sphere whose reflectance is a texture.
 inline std::string texturedSphere(std::string_view texture) {
   return "<shape type=\"sphere\"><bsdf type=\"diffuse\">" + std::string(texture) + "</bsdf></shape>";
