@@ -28,14 +28,13 @@ set(WAVECREST_LIGHT_OPTIMIZATION $<$<CONFIG:Release>:-O1>)
 macro(optimize_lightly)
   add_compile_options(${WAVECREST_LIGHT_OPTIMIZATION})
 endmacro()
-# The files of such a folder that do matter. Several of one library are compiled as one in a library of objects
-# (add_optimized_objects).
+# Files of such a folder whose speed matters. Where a library has several, add_optimized_objects compiles them as one.
 function(optimize_fully)
   set_source_files_properties(${ARGN} PROPERTIES
     COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
-# add_optimized_objects(NAME TARGET source...): sources of the library TARGET that matter, as the objects NAME; their
-# own options would keep them out of its unity build. After target_link_libraries(TARGET), as they compile with the same.
+# add_optimized_objects(NAME TARGET source...): compiles sources of the library TARGET at -O3, as the object library NAME,
+# which has a unity build of its own. To be called after target_link_libraries(TARGET), whose libraries it links too.
 function(add_optimized_objects name target)
   add_library(${name} OBJECT ${ARGN})
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O3>)

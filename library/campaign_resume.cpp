@@ -74,7 +74,7 @@ std::optional<CampaignOptions> extended(const CampaignOptions& before, const std
   }
   if (name == "--time" || name == "--time-factor" || name == "--spp")
     return isLonger(before, after) ? std::optional(after) : std::nullopt;
-  // Options whose meaning the results file tells: what the campaign has without them may be said.
+  // Options whose values are in the results file also where they were not given: giving the same value changes nothing.
   constexpr std::array<std::string_view, 10> kTold{"--profile",     "--size",         "--precision", "--sampler",
                                                    "--radius",      "--radius-alpha", "--roulette",  "--merge-vertices",
                                                    "--light-paths", "--clock"};

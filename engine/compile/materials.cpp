@@ -19,8 +19,8 @@ namespace {
 // than about as much. Even at a ratio of 1 the boundary differs from none: its facets still shadow each other.
 constexpr double kIndexMatched = 1e-4;
 
-// Where a colour of a plastic or a phong is textured, the least share of the samples for either lobe. A mean near 0
-// hides bright texels, whose lobe a share by the means would draw too rarely for numbers of 24 bits.
+// Least probability of sampling either lobe of a plastic or phong with a textured colour. A texture with a mean near 0
+// may have bright texels; a probability that follows the mean would be too small for random numbers of 24 bits.
 constexpr float kLeastShare = 1.0f / 16;
 
 // Mitsuba 0.6 scales the colours of a phong whose sum is above 1 in a channel down to this sum.
@@ -127,8 +127,8 @@ class Compiler {
   }
 
  private:
-  // Share of the samples that the specular lobe gets: that of its mean colour, a number by `toNumber`, in the sum of
-  // both. The share of a black material does not matter.
+  // The probability of sampling the specular lobe: its mean colour over the sum of both means, as numbers by
+  // `toNumber`. That of a black material does not matter.
   template <class ToNumber>
   float specularShare(const TexturedRgb& specular, const TexturedRgb& diffuse, const ToNumber& toNumber) const {
     const double ofSpecular = toNumber(mean(specular, scene_)), sum = ofSpecular + toNumber(mean(diffuse, scene_));

@@ -5,8 +5,8 @@
 
 namespace wavecrest {
 
-// The constant, or the mean over the texels of a bitmap or over a checkerboard's two colours. Mean and greatest value
-// of a baked attribute are those of its triangles' corners.
+// The constant, or the mean over the texels of a bitmap or over a checkerboard's two colours. This and the next leave
+// out texels of baked attributes that lie outside of their triangles.
 Rgb mean(const TexturedRgb& colour, const Scene& scene);
 
 // The constant, or the greatest value of each channel, at least 0.

@@ -30,7 +30,7 @@ struct SceneInspection {
   PrimitiveCounts primitives;      // copies of instances among them, or those of each group once
   size_t groups = 0, instances = 0;
   bool keepsInstances = false;   // rather than make copies of them
-  size_t hierarchyNodes = 0;     // of `bvh`; 0: the scene has another intersector
+  size_t hierarchyNodes = 0;     // of `bvh`: 0 if all primitives are in one leaf, and for other intersectors
   double bytesPerPrimitive = 0;  // its record and attributes, and its share of the hierarchy
   BoundingSphere bounds;
   Accel accel{};

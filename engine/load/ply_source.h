@@ -21,7 +21,7 @@ class AsciiSource {
 
   float real(PlyType) { return scanner_.readFloat(kNumber); }
   int64_t integer(PlyType) { return scanner_.readInteger("a whole number"); }
-  // Skipped values may be anything, also not finite.
+  // Skipped values need not be finite.
   void skip(PlyType, uint64_t count) {
     for (uint64_t i = 0; i < count; ++i) scanner_.skipToken(kNumber);
   }

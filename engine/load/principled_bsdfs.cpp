@@ -9,7 +9,7 @@ namespace wavecrest {
 
 namespace {
 
-// A number from 0 to `most`, or a texture, whose values are clamped to that when it is looked up.
+// A number from 0 to `most`, else a LoadError; or a texture, whose values kernels clamp to that range.
 TexturedFloat readShare(LoadContext& context, Parameters& parameters, const char* name, int most = 1) {
   const TexturedFloat share = readTexturedFloat(context, parameters, name, 0);
   if (share.texture == kNone && share.value > most) {

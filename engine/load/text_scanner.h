@@ -43,7 +43,7 @@ class TextScanner {
 
   float readFloat(const char* what);
   int64_t readInteger(const char* what);
-  // Skips what stands in the place of a number.
+  // Skips one token, number or not. what: names it in the error at the end of the file.
   void skipToken(const char* what);
   size_t bytesLeft() const { return static_cast<size_t>(end_ - at_); }
 

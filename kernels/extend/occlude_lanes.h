@@ -7,7 +7,8 @@
 
 WAVECREST_SIMD_BEGIN
 
-// What walks read of shadow rays. It is in float under every precision, so that walks are compiled once.
+// The columns of ShadowRays that hierarchies are walked with. They are floats under every precision policy, so that the
+// walks are compiled once.
 struct ShadowSegments {
   size_t size;
   const float *originX, *originY, *originZ, *directionX, *directionY, *directionZ;

@@ -9,11 +9,11 @@
 
 WAVECREST_SIMD_BEGIN
 
-// All that shading a vertex depends on: sets that differ in nothing else share its code.
+// The features that shading a vertex depends on. Feature sets that differ in others only share its code.
 constexpr uint32_t kShadedFeatures = kOtherBsdfs | kTextures | kShadingNormals | kNormalMaps;
 
-// Calls shade(features) with a std::integral_constant: what shading needs of vertices that are all diffuse, or may have
-// any BSDF.
+// Calls shade(features). features: a std::integral_constant of the features that shading needs, without kOtherBsdfs
+// where all vertices are diffuse.
 template <uint32_t kFeatures, class Shade>
 WAVECREST_INLINE auto withBsdfs(bool diffuse, const Shade& shade) {
   if constexpr (!onlyDiffuse(kFeatures)) {

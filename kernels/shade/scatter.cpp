@@ -23,14 +23,14 @@ WAVECREST_INLINE typename P::Real specularJacobian(const ShadingLanes<P, kBsdfs>
   return sample.pdfReverse * reciprocal(sample.pdf) * woCosine * cosines * sample.etaRatio * sample.etaRatio;
 }
 
-// What scatterRange reads of a feature set, beside its BSDFs.
+// The features that change what scatterRange does, apart from its set of BSDFs.
 constexpr uint32_t scatterFeatures(uint32_t features) {
   const uint32_t asked = kBidirectional | kShadingNormals | kTextures;
   return (features & asked) | (hasRouletteScale(features) ? uint32_t{kSpecularBsdfs} : 0u);
 }
 
 // Scatters vertices [begin, end), whose BSDFs are of kBsdfs, to `out`; where they end. Both stages share its code, and
-// so do feature sets of which it reads the same.
+// so do feature sets that are equal by scatterFeatures.
 template <class P, uint32_t kFeatures, uint32_t kBsdfs>
 WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& context,
                                        Wave<typename P::Storage>& wave, Lobes lobes, size_t begin, size_t end,

@@ -11,8 +11,8 @@
 
 #include "bench/results/results_store.h"
 #include "library/errors.h"
-#include "tests/library/refusal.h"
 #include "tests/metrics/temporary_folder.h"
+#include "tests/refusal.h"
 
 namespace wavecrest {
 namespace {
@@ -135,7 +135,7 @@ TEST(CampaignOptions, whatACampaignHasByDefaultMayBeSaid) {
   EXPECT_THROW(resumed(begun, {{"--precision", {"double"}}}), UsageError);
 }
 
-// A profile may choose another radius than when the campaign began.
+// The default radius of a profile may have changed since the campaign began.
 TEST(CampaignOptions, whatTheProfileChoseWhenTheCampaignBeganMayBeSaid) {
   const test::TemporaryFolder folder;
   const api::CampaignOptions first{.defining = {{"scenes", {"cornell-diffuse"}}, {"--methods", {"vcm"}}},

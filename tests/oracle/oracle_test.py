@@ -27,7 +27,7 @@ import image_statistics
 import renderers
 
 SEEDS = range(1, 17)  # of Mitsuba's pictures: enough for the variance of a tile to be known to 20 %
-# Of wavecrest's at first: as few as the comparison takes, unless ORACLE_LIVE asks for all.
+# Seeds of wavecrest's first renders of a case: the fewest that image_statistics.compare accepts, all with ORACLE_LIVE.
 OUR_SEEDS = SEEDS if os.environ.get("ORACLE_LIVE") else range(1, 9)
 # How far rounding may move a pixel: threads add up what is splatted and merged in any order.
 SAME_IMAGE = 1e-5
