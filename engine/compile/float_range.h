@@ -1,4 +1,5 @@
-// What single precision holds of a scene's size. Rays are intersected in it under every precision policy.
+// Limits of a scene's size. Rays are intersected in single precision under every precision policy, and beyond these
+// limits that overflows or underflows.
 #pragma once
 
 #include <vector>

@@ -12,7 +12,7 @@ WAVECREST_INLINE Vec3<Real> offsetOrigin(Vec3<Real> position, Vec3<Real> normal,
   return mulAdd(normal, copySign(offset, dot(normal, direction)), position);
 }
 
-// How far off its surface a shadow ray of this length ends; offset: of the end's position.
+// How far from the surface that it goes to a shadow ray ends. offset: for rays that start there. length: of the ray.
 template <class Real>
 WAVECREST_INLINE Real endOffset(Real offset, Real length) {
   return mulAdd(length, Real(kEndGamma), offset);

@@ -53,15 +53,18 @@ std::string tgaOf(bool runs, bool topFirst) {
 }
 const std::vector<float> kRedOverBlue = {1, 0, 0, 0, 0, 1};
 
-TEST(Bitmap, BmpOfEachLayout) {
+// bytesOf: the two pixels as a file; its first argument is palette or runs, its second topFirst.
+void expectRedOverBlue(const std::string& file, std::string (*bytesOf)(bool, bool)) {
   const Folder folder;
-  for (const bool palette : {false, true}) {
+  for (const bool packed : {false, true}) {
     for (const bool topFirst : {false, true}) {
-      folder.write("two.bmp", bmpOf(palette, topFirst));
-      EXPECT_EQ(bitmapOf(folder, "two.bmp").bitmap->pixels, kRedOverBlue) << palette << topFirst;
+      folder.write(file, bytesOf(packed, topFirst));
+      EXPECT_EQ(bitmapOf(folder, file).bitmap->pixels, kRedOverBlue) << file << packed << topFirst;
     }
   }
 }
+
+TEST(Bitmap, BmpOfEachLayout) { expectRedOverBlue("two.bmp", bmpOf); }
 
 TEST(Bitmap, MasksOfABmpSayWhereItsChannelsAre) {
   const Folder folder;
@@ -92,15 +95,7 @@ TEST(Bitmap, MasksOfABmpThatAreNotWholeBytesAreErrors) {
   }
 }
 
-TEST(Bitmap, TgaOfEachLayout) {
-  const Folder folder;
-  for (const bool runs : {false, true}) {
-    for (const bool topFirst : {false, true}) {
-      folder.write("two.tga", tgaOf(runs, topFirst));
-      EXPECT_EQ(bitmapOf(folder, "two.tga").bitmap->pixels, kRedOverBlue) << runs << topFirst;
-    }
-  }
-}
+TEST(Bitmap, TgaOfEachLayout) { expectRedOverBlue("two.tga", tgaOf); }
 
 TEST(Bitmap, TgaRunRepeatsItsColour) {
   std::string bytes = tgaOf(true, true).substr(0, 18);
