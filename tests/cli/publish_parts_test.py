@@ -146,7 +146,7 @@ class PublishParts(unittest.TestCase):
             return publish.commands(campaign, folder, readme)[-1].removeprefix("bench/campaign/publish DIR")
 
         self.assertEqual(words(CAMPAIGN / "standard"), "")
-        self.assertEqual(words(CAMPAIGN / "study-next"), " --to bench/campaign/study-next")
+        self.assertEqual(words(CAMPAIGN / "another"), " --to bench/campaign/another")
         study = words(CAMPAIGN / "study", ROOT / "README.md")
         self.assertEqual(study, " --to bench/campaign/study --readme README.md")
         elsewhere = ROOT.parent / "elsewhere"
