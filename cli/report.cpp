@@ -51,8 +51,9 @@ void addReportCommand(CommandLine& program, int& exitCode) {
   command.add("--reference", options->reference, "image that a folder of renders or images is measured against");
   command.add("--baseline", options->files.baseline,
               "method that speed-ups are over; default: the first, pt if it is there");
-  command.addFlag("--csv", options->files.csv,
-                  "also write DIR/measurements.csv, every score of every snapshot, and DIR/summary.csv and claims.csv");
+  command.addFlag(
+      "--csv", options->files.csv,
+      "also write DIR/measurements.csv, every score of every snapshot, and DIR/summary.csv, times.csv and claims.csv");
   command.addFlag("--plots", options->files.plots, "also write each plot as DIR/plots/SCENE.METRIC.svg");
   command.addFlag("--judge", options->judge, "judge the study's findings anew, by the conditions of this program");
   command.addFlag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");

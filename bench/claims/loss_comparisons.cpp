@@ -9,13 +9,12 @@
 #include <utility>
 
 #include "bench/claims/claim_needs.h"
+#include "bench/statistics/time_to_loss.h"
 
 namespace wavecrest {
 namespace {
 
 using V = ClaimVerdict;
-
-constexpr double kNearFloor = 2;  // times the loss that the reference's noise alone gives
 
 }  // namespace
 

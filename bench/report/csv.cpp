@@ -1,10 +1,14 @@
 #include "bench/report/csv.h"
 
+#include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "bench/report/html_text.h"
 #include "bench/report/series_values.h"
+#include "bench/report/time_ahead.h"
+#include "bench/statistics/time_to_loss.h"
 
 namespace wavecrest {
 namespace {
@@ -22,6 +26,10 @@ std::string field(std::string_view text) {
   }
   return quoted + '"';
 }
+
+// Scores that people ask times to, by the keys of their metrics.
+constexpr std::array<std::pair<std::string_view, double>, 4> kAskedScores{
+    {{"ssim", 0.9}, {"ssim", 0.95}, {"q_mos", 80}, {"q_mos", 90}}};
 
 // The shortest text that reads back as the same number; empty where there is none.
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
@@ -84,6 +92,33 @@ std::string summaryAsCsv(const ConvergenceReport& report) {
         } else {
           csv += ",,,,\n";
         }
+      }
+    }
+  }
+  return csv;
+}
+
+std::string timesAsCsv(const ConvergenceReport& report) {
+  std::string csv = "scene,method,series,metric,target,seconds,at_most,seconds_ahead,low,high,near_floor\n";
+  for (const ReportScene& scene : report.scenes) {
+    for (const ReportSeries& series : scene.series) {
+      for (const auto& [key, target] : kAskedScores) {
+        const std::optional<size_t> m = findMetric(report, key);
+        if (!m) continue;
+        const ReportMetric& metric = report.metrics[*m];
+        const std::optional<double> floor = *m < scene.noiseFloors.size() ? scene.noiseFloors[*m] : std::nullopt;
+        append(csv, "{},{},{},{},{}", field(scene.name), field(series.method), field(series.label), key, target);
+        const std::optional<TargetTime> time = timeToReach(series, metric, *m, target);
+        append(csv, ",{},{}", time ? number(time->seconds) : "", time && time->atMost ? "yes" : "");
+        const std::optional<TimeAhead> ahead = timeAhead(series, metric, *m, target, floor);
+        if (ahead) {
+          const bool open = !(ahead->interval.high <= kFarthestTime * ahead->end);
+          append(csv, ",{},{},{}", number(ahead->end + ahead->seconds), number(ahead->end + ahead->interval.low),
+                 open ? "" : number(ahead->end + ahead->interval.high));
+        } else {
+          csv += ",,,";
+        }
+        append(csv, ",{}\n", isNearFloor(metric, target, floor) ? "yes" : "");
       }
     }
   }

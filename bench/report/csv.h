@@ -18,4 +18,11 @@ std::string claimsAsCsv(const ConvergenceReport& report);
 /// score, and the render time from which on the mean curve has the metric's target, where it has one and ends with it.
 std::string summaryAsCsv(const ConvergenceReport& report);
 
+/// A line for each series and each score that people ask times to, SSIM 0.9 (the study's measure of convergence) and
+/// 0.95, Q_MOS 80 and 90: the render time from which on the mean curve has it, "yes" where its first snapshot does; for
+/// one that does not end with it the time at the rate of its curve, with the ends of the 95 % interval, where it is
+/// known (time_ahead.h; no high end: it may be more than 100 times the render time). near_floor: "yes" where the
+/// reference's noise keeps curves from it.
+std::string timesAsCsv(const ConvergenceReport& report);
+
 }  // namespace wavecrest

@@ -11,10 +11,16 @@
 
 namespace wavecrest {
 
+bool isNearFloor(const ReportMetric& metric, double target, std::optional<double> floor) {
+  if (!floor) return false;
+  if (!metric.best) return isBetter(metric, target, *floor);
+  return kNearFloor * std::abs(*metric.best - *floor) > std::abs(*metric.best - target);
+}
+
 std::optional<TimeAhead> timeAhead(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
                                    double target, std::optional<double> floor) {
   if (!metric.best || timeToReach(series, metric, metricIndex, target)) return std::nullopt;
-  if (floor && isBetter(metric, target, *floor)) return std::nullopt;
+  if (isNearFloor(metric, target, floor)) return std::nullopt;
   std::vector<std::vector<LossPoint>> runs;
   for (const ReportRun& run : series.runs) {
     std::vector<LossPoint>& points = runs.emplace_back();

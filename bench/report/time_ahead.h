@@ -17,9 +17,13 @@ struct TimeAhead {
   double end = 0;  ///< of the runs, in seconds
 };
 
+/// Whether the reference's noise keeps curves from a target or bends them before it: an image without error would score
+/// worse, or its loss is more than half of the target's (kNearFloor). floor: what it would score.
+bool isNearFloor(const ReportMetric& metric, double target, std::optional<double> floor);
+
 /// Nothing where the target was reached, no score of the metric is the best, a run has fewer than three snapshots in
-/// that part or does not get better there, or the target is more than 100 times the render time away. floor: the score
-/// of a perfect image against this reference; a target beyond it is out of reach.
+/// that part or does not get better there, the target is more than 100 times the render time away, or near the score of
+/// a perfect image against this reference, floor.
 std::optional<TimeAhead> timeAhead(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
                                    double target, std::optional<double> floor);
 

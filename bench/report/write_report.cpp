@@ -55,6 +55,7 @@ WrittenReport writeReport(std::span<const fs::path> paths, const ReportFiles& fi
   if (files.csv) {
     const std::pair<const char*, std::string> tables[] = {{"measurements.csv", measurementsAsCsv(report)},
                                                           {"summary.csv", summaryAsCsv(report)},
+                                                          {"times.csv", timesAsCsv(report)},
                                                           {"claims.csv", claimsAsCsv(report)}};
     for (const auto& [name, table] : tables) written.push_back(write(folder, name, table));
   }

@@ -10,9 +10,9 @@
 namespace wavecrest {
 
 struct ReportFiles {
-  bool csv = false;           ///< measurements.csv: every measurement; summary.csv: series at their ends; claims.csv
-  bool plots = false;         ///< plots/SCENE.METRIC.svg
-  std::string baseline = {};  ///< method that speed-ups are over; empty: the first of the report
+  bool csv = false;  ///< measurements.csv: every measurement; summary.csv: series at their ends; times.csv; claims.csv
+  bool plots = false;                    ///< plots/SCENE.METRIC.svg
+  std::string baseline = {};             ///< method that speed-ups are over; empty: the first of the report
   std::filesystem::path reference = {};  ///< what a folder of renders is measured against; empty: what it has itself
 };
 

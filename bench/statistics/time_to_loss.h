@@ -16,6 +16,10 @@ namespace wavecrest {
 // A line is not followed farther than so many times the time that it was fitted to.
 constexpr double kFarthestTime = 100;
 
+// Nor to losses within so many times that of an image without error, which the reference's noise makes as well: curves
+// are flatter there.
+constexpr double kNearFloor = 2;
+
 // A snapshot. Those of a run are in order of time.
 struct LossPoint {
   double seconds = 0, loss = 0;

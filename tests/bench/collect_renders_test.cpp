@@ -415,11 +415,12 @@ TEST_F(CollectRenders, writesThePageIntoTheFolder) {
   EXPECT_EQ(writeReport(folders).files, (std::vector<fs::path>{folder / "report.html"}));
   EXPECT_GT(fs::file_size(folder / "report.html"), 10000U);
   const std::vector<fs::path> files = writeReport(folders, {.csv = true, .plots = true}).files;
-  ASSERT_EQ(files.size(), 4 + collectRenders(folder).metrics.size());
+  ASSERT_EQ(files.size(), 5 + collectRenders(folder).metrics.size());
   EXPECT_EQ(files[1], folder / "measurements.csv");
   EXPECT_EQ(files[2], folder / "summary.csv");
-  EXPECT_EQ(files[3], folder / "claims.csv");
-  EXPECT_EQ(files[4], folder / "plots" / "box.rmse.svg");
+  EXPECT_EQ(files[3], folder / "times.csv");
+  EXPECT_EQ(files[4], folder / "claims.csv");
+  EXPECT_EQ(files[5], folder / "plots" / "box.rmse.svg");
   for (const fs::path& file : files) EXPECT_TRUE(fs::is_regular_file(file)) << file;
 }
 

@@ -81,7 +81,8 @@ TEST(TimeAhead, isUnknownWhereTheCurveDoesNotLeadThere) {
   EXPECT_FALSE(timeAhead(falling(-1, {1}), kError, 0, 0.1, {})) << "rises";
   EXPECT_FALSE(timeAhead(falling(0.5, {1}), kError, 0, 0.001, {})) << "a million seconds away";
   EXPECT_FALSE(timeAhead(falling(1, {1}), kError, 0, 0.025, 0.03)) << "the reference's noise is larger";
-  EXPECT_TRUE(timeAhead(falling(1, {1}), kError, 0, 0.025, 0.01));
+  EXPECT_FALSE(timeAhead(falling(1, {1}), kError, 0, 0.025, 0.013)) << "more than half of that error is its noise";
+  EXPECT_TRUE(timeAhead(falling(1, {1}), kError, 0, 0.025, 0.012));
   ReportSeries brief = falling(1, {1});
   brief.runs[0].points.resize(2);
   EXPECT_FALSE(timeAhead(brief, kError, 0, 0.025, {})) << "two points have no residual";

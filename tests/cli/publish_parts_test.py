@@ -33,6 +33,31 @@ class PublishParts(unittest.TestCase):
         self.assertEqual(curves.time_to(series, 0.9, higher=True), (4.0, False))
         self.assertIsNone(curves.time_to([[(0, 1.0, 0.5), (1, 2.0, 0.95), (2, 4.0, 0.8)]], 0.9, higher=True))
 
+    def test_a_score_that_none_reaches_has_the_time_at_which_the_first_one_would(self):
+        publish = program_module("bench/campaign/publish")
+        campaign = object.__new__(publish.Campaign)
+        campaign.methods = ["pt", "bpt", "vcm"]
+        ends = {"pt": 0.92, "bpt": 0.91, "vcm": 0.6}
+        campaign.series = {("a", method, "ssim"): [[(0, 1.0, 0.5), (1, 10.0, end)]] for method, end in ends.items()}
+        campaign.floors = {"a": {"ssim": 0.96}}
+
+        def told(rows, target=0.95):
+            cell, time = publish.first_or_closest(campaign, "a", "ssim", target, rows)
+            self.assertEqual(time, "")
+            return cell.removeprefix("– <sub>").removesuffix("</sub>") + publish.allowed(campaign, "a", "ssim", target)
+
+        def times(near_floor, **ahead):
+            keys = ("seconds_ahead", "low", "high")
+            row = {"scene": "a", "metric": "ssim", "target": 0.95, "seconds": "", "at_most": "", "near_floor": near_floor}
+            campaign.times = [row | {"method": m} | dict(zip(keys, ahead.get(m, ("", "", "")))) for m in campaign.methods]
+
+        times("", pt=("123.4", "51.2", "1314"), bpt=("99.6", "40", ""))
+        self.assertEqual(told(["pt"]), "pt 0.920; 120 s (51 to 1300)")
+        self.assertEqual(told(["pt", "bpt"]), "pt 0.920; bpt 100 s (40 or longer)")
+        self.assertEqual(told(["vcm"]), "vcm 0.600", "a curve that does not lead there")
+        times("yes")
+        self.assertEqual(told(["pt"]), "pt 0.920<br><sub>perfect image 0.960</sub>")
+
     def test_axes_of_time_have_round_labels(self):
         self.assertEqual(self.times_of(360.0), ["0 s", "100 s", "200 s", "300 s"])
         self.assertEqual(self.times_of(10.0), ["0 s", "5 s", "10 s"])
