@@ -1,7 +1,7 @@
-"""What tables and figures read off a campaign's measurements: curves over seeds, scores at the end, times to a score.
+"""What tables and figures read off a campaign's measurements: curves over seeds, scores at the end, speed-ups.
 
-The same figures as the report's (bench/report/series_values.cpp, speedup_section.cpp), for scores that the report has no
-target for: a table of the page must not differ from the report beside it. A run is a list of (snapshot, seconds, value),
+The same figures as the report's (bench/report/series_values.cpp, speedup_section.cpp), which has them on its page alone: a table
+here must not differ from the report beside it. A run is a list of (snapshot, seconds, value),
 in order of time, with NaN for a value that is none; a series is the runs of one method in one scene by one metric.
 """
 

@@ -22,7 +22,7 @@ def value_axis(metric, curves, end):
         step, best = STEPS[metric]
         worst = min(next((v for t, v in curve if t >= SCORES_FROM * end), curve[-1][1]) for curve in curves.values())
         return even_axis(max(min(math.floor(worst / step), round(best / step) - 1) * step, 0.0), best, most=6)
-    seen = [v for curve in curves.values() for t, v in curve if t >= ERRORS_FROM * end and v > 0]
+    seen = [v for curve in curves.values() for t, v in curve if t >= ERRORS_FROM * end and v > 0] or [1.0]
     return decade_axis(0.9 * min(seen), 1.1 * max(seen), fewest=3)
 
 

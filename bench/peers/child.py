@@ -16,7 +16,6 @@ from job import Failed, Sample
 
 HERE = pathlib.Path(__file__).resolve().parent
 CHILDREN = HERE / "children"
-REFUSED = 3  # exit status of neutral_convert.py
 LIMIT_SECONDS = 120  # for loading with a first render, and for any other render
 
 

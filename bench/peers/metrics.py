@@ -1,4 +1,4 @@
-"""Times SSIM and FLIP of wavecrest beside scikit-image and flip-evaluator on one pair of images, and HDR-VDP-2 alone.
+"""Times SSIM and FLIP of wavecrest beside scikit-image and flip-evaluator on one pair of images, and its other metrics alone.
 
     bench/peers/metrics [--rounds 8] [--bench build/release/bench/micro/metrics_bench] [--json FILE]
 

@@ -17,7 +17,7 @@ import tempfile
 import table_run
 import table_scenes
 import table_text
-from job import parse_size
+from job import Failed, parse_size
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
@@ -70,7 +70,8 @@ def measure(options):
                 try:
                     row = table_run.measure(scene, method, options, pathlib.Path(folder))
                 except Exception as error:  # one scene never ends the table
-                    row = {"scene": scene.name, "method": method, "failed": f"{type(error).__name__}: {error}"}
+                    why = str(error) if isinstance(error, Failed) else f"{type(error).__name__}: {error}"
+                    row = {"scene": scene.name, "method": method, "failed": why}
                 results["rows"].append({"group": scene.group, **row})
                 print(f"{method} ", end="", file=sys.stderr, flush=True)
         print(file=sys.stderr)
@@ -83,6 +84,7 @@ def main(words):
     results = json.loads(options.source.read_text(encoding="utf-8")) if options.source else measure(options)
     print(table_text.plain(results))
     if options.markdown:
+        options.markdown.parent.mkdir(parents=True, exist_ok=True)
         options.markdown.write_text(table_text.markdown(results), encoding="utf-8")
     if not results["rows"] or all("failed" in row for row in results["rows"]):
         sys.exit(1)

@@ -78,7 +78,7 @@ def _words(value: object) -> list[str]:
 
 
 def converge(
-    scenes: Sequence[str | os.PathLike[str]] | str | None = None,
+    scenes: Sequence[str | os.PathLike[str]] | str | os.PathLike[str] | None = None,
     *,
     methods: Sequence[str] | None = None,
     time: float | str | None = None,
@@ -122,7 +122,8 @@ def converge(
         words = [f"{name}={scene_value(value)}" for name, value in D.items()] if isinstance(D, Mapping) else D
         defining["-D"] = _words(words)
     if scenes is not None:
-        defining["scenes"] = [os.fspath(scene) for scene in ([scenes] if isinstance(scenes, str) else scenes)]
+        listed = [scenes] if isinstance(scenes, (str, os.PathLike)) else scenes
+        defining["scenes"] = [os.fspath(scene) for scene in listed]
     done = _native.converge(
         defining,
         os.fspath(out),

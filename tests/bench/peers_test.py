@@ -347,6 +347,16 @@ class SceneXml(unittest.TestCase):
         self.assertIn("assets/small_sun.exr", text)
         self.assertNotIn("$sun", text)
 
+    def test_the_depth_may_be_a_variable(self):
+        def depth(value):
+            return scene_xml.max_depth(
+                '<scene><default name="depth" value="65"/><integrator type="path"><integer name="max_depth" '
+                f'value="{value}"/></integrator></scene>'
+            )
+
+        self.assertEqual([depth("7"), depth("$depth"), depth("${depth}")], [7, 65, 65])
+        self.assertEqual(scene_xml.max_depth('<scene><integrator type="path"/></scene>'), -1)
+
     def test_an_unknown_default_is_refused(self):
         with self.assertRaisesRegex(ValueError, "colour"):
             scene_xml.flatten(ROOM, defaults={"colour": 1})

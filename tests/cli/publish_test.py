@@ -86,6 +86,11 @@ class Publishing(PublishTest):
     def test_campaigns_that_are_not_done_are_refused(self):
         self.campaign()
         database = sqlite3.connect(self.path("a/results.sqlite"))
+        # One that is being extended: no run has the new time yet.
+        database.execute("UPDATE campaign SET value = '0.1' WHERE key = 'time'")
+        database.commit()
+        self.assertIn("cornell-diffuse: runs of 0.05 s, not of 0.1 s; expected", self.publish().stderr)
+        database.execute("UPDATE campaign SET value = '0.05' WHERE key = 'time'")
         (stats,) = database.execute("SELECT stats FROM run WHERE id = 1").fetchone()
         longer = json.dumps({**json.loads(stats), "asked_seconds": 0.1})
         database.execute("UPDATE run SET stats = ? WHERE id = 1", [longer])

@@ -46,9 +46,10 @@ def filter_type(xml_text):
 
 
 def max_depth(xml_text):
-    """Of the scene's integrator; -1, unlimited, where it says none."""
-    entry = ElementTree.fromstring(xml_text).find("integrator/integer[@name='max_depth']")
-    return -1 if entry is None else int(entry.get("value"))
+    """Of the scene's integrator, also by a variable's default; -1, unlimited, where it says none."""
+    root = ElementTree.fromstring(xml_text)
+    entry = root.find("integrator/integer[@name='max_depth']")
+    return -1 if entry is None else int(_with_defaults(entry.get("value"), root))
 
 
 def hides_emitters(xml_text):
@@ -57,14 +58,18 @@ def hides_emitters(xml_text):
     return any(entry.get("value") == "true" for entry in entries)
 
 
+def _with_defaults(text, root):
+    """The text with the values of the scene's <default> entries in place of $names."""
+    values = {entry.get("name"): entry.get("value") for entry in root.iter("default")}
+    return re.sub(r"\$\{?(\w+)\}?", lambda found: values.get(found[1], found[0]), text)
+
+
 def _resolve_names_with_variables(root, *folders):
     """Makes file names such as assets/$sun.exr absolute, by the values of the variables in them."""
-    values = {entry.get("name"): entry.get("value") for entry in root.iter("default")}
     for entry in root.iter("string"):
         name = entry.get("value", "")
         if entry.get("name") == "filename" and "$" in name.lstrip("$"):
-            name = re.sub(r"\$\{?(\w+)\}?", lambda found: values.get(found[1], found[0]), name)
-            entry.set("value", _absolute(name, *folders))
+            entry.set("value", _absolute(_with_defaults(name, root), *folders))
 
 
 def _set_integer(parent, name, value):

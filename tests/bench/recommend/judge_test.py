@@ -59,6 +59,11 @@ class Campaigns(unittest.TestCase):
         self.assertIsNone(self.judge.time_to(curve[:3], 0.9))
         self.assertEqual(self.judge.time_to(curve, 0.5), 1)
 
+    def test_targets_are_what_a_curve_keeps_from_half_of_its_run_on(self):
+        self.assertEqual(self.judge.kept_from_half([(1, 0.5), (4, 0.95), (8, 0.94)]), 0.94)
+        self.assertAlmostEqual(self.judge.kept_from_half([(1, 0.4), (4, 0.6), (16, 0.8), (32, 0.9)]), 0.8)
+        self.assertEqual(self.judge.kept_from_half([(7, 0.8), (12, 0.9)]), float("-inf"), "it has no score at half")
+
     def test_a_scene_that_is_not_there_is_refused(self):
         told = subprocess.run([sys.executable, JUDGE, "wavecrest", "moon"], capture_output=True, text=True)
         self.assertEqual(told.returncode, 2)
