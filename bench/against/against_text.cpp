@@ -21,10 +21,10 @@ std::string toText(const AgainstResult& result) {
          row.method, row.iterations, median(row.otherSeconds), median(row.ourSeconds), c.speedup, c.interval.low,
          c.interval.high, c.probability, toString(c.verdict), image);
   }
-  line(
-      text,
-      "\np: signed-rank test of the pairs, corrected for {} comparison{} (Holm): a false verdict anywhere in {} of 100",
-      result.rows.size(), result.rows.size() == 1 ? "" : "s", 100 * result.family.level);
+  line(text,
+       "\np: signed-rank test of the pairs, corrected for {} comparison{} (Holm): a false verdict anywhere in {:g} of "
+       "100",
+       result.rows.size(), result.rows.size() == 1 ? "" : "s", 100 * result.family.level);
   for (const std::filesystem::path& program : result.inPlace) {
     line(text, "{} runs only where it stands: a few per cent of difference may come from where its file lies in memory",
          program.string());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
 namespace wavecrest {
@@ -55,11 +56,12 @@ std::vector<BiasRecord> measureBiases(std::span<const RunRecord* const> runs, co
   std::vector<BiasRecord> biases;
   if (runs.size() < 2) return biases;
   for (const SnapshotRecord& first : runs[0]->snapshots) {
-    // The images of this number. Runs begin and end with different ones, and some are not kept.
+    // The images of this number. Runs begin and end with different ones, and some are not kept, or
+    // no longer.
     std::vector<Image> images;
     for (const RunRecord* run : runs) {
       const auto own = std::ranges::find(run->snapshots, first.number, &SnapshotRecord::number);
-      if (own == run->snapshots.end() || own->file.empty()) break;
+      if (own == run->snapshots.end() || !std::filesystem::is_regular_file(own->file)) break;
       images.push_back(readImage(own->file).image);
     }
     if (images.size() < runs.size()) continue;

@@ -64,16 +64,18 @@ std::string processorOf(const json& stats, const CampaignResults& results) {
   return stats.value("cpu", first);
 }
 
-// The runs of all methods have equal time on one processor, unless the campaign was extended: otherwise a text of two
-// that differ.
+// The runs of all methods have equal time and equally many threads of one processor, unless the campaign was extended
+// or its parts are of different machines: otherwise a text of what differs.
 std::string unequalRuns(const std::set<std::string>& methods, const SceneLosses& scene) {
   std::optional<double> shortest, longest;
   std::set<std::string> processors;
+  std::set<uint32_t> threads;
   for (const std::string& method : methods) {
     for (const RunRecord* run : scene.runs(method)) {
       const json stats = json::parse(run->stats, nullptr, false);
       if (!stats.is_object()) continue;
       if (std::string cpu = processorOf(stats, scene.results()); !cpu.empty()) processors.insert(std::move(cpu));
+      if (const auto own = stats.value("threads", 0U); own > 0) threads.insert(own);
       if (!stats.contains("asked_seconds")) continue;
       const double asked = stats["asked_seconds"];
       shortest = std::min(shortest.value_or(asked), asked);
@@ -82,6 +84,9 @@ std::string unequalRuns(const std::set<std::string>& methods, const SceneLosses&
   }
   if (shortest != longest) {
     return fmt::format("runs of {} and of {} stand side by side", secondsText(*shortest), secondsText(*longest));
+  }
+  if (threads.size() > 1) {
+    return fmt::format("runs of {} threads stand side by side", fmt::join(threads, " and of "));
   }
   if (processors.size() < 2) return "";
   return fmt::format("runs of two processors stand side by side: {}", fmt::join(processors, " and "));

@@ -18,6 +18,11 @@ using V = ClaimVerdict;
 
 constexpr size_t kBiasSnapshots = 3;  // that must agree on a share of bias
 
+// Whether a list "a; b" has the text.
+bool lists(const std::string& list, const std::string& text) {
+  return ("; " + list + "; ").find("; " + text + "; ") != std::string::npos;
+}
+
 // Judges one condition on one scene: makes its comparisons and keeps the one that decides.
 class Judge {
  public:
@@ -48,9 +53,7 @@ class Judge {
 
   // Adds a text to the evidence, unless it is there already.
   void note(const std::string& text) {
-    if (result_.evidence.find(text) == std::string::npos) {
-      result_.evidence += (result_.evidence.empty() ? "" : "; ") + text;
-    }
+    if (!lists(result_.evidence, text)) result_.evidence += (result_.evidence.empty() ? "" : "; ") + text;
   }
 
   // Keeps the comparison with the heaviest verdict. Among equal verdicts it keeps the one with the smallest margin: the
@@ -302,7 +305,7 @@ void Judgement::add(const Judgement& other) {
     verdict = other.verdict;
     figure = other.figure;
   }
-  if (other.evidence.empty() || evidence.find(other.evidence) != std::string::npos) return;
+  if (other.evidence.empty() || lists(evidence, other.evidence)) return;
   evidence += (evidence.empty() ? "" : "; ") + other.evidence;
 }
 

@@ -126,9 +126,19 @@ Comparison LossComparisons::worseHere(const std::string& metric, const std::stri
   if (!here || !there) return {V::notJudged, 0, "the control, " + control + ", was not measured"};
   // The two scenes are independent, so the squares of their half widths add up.
   const Band band{here->mean - there->mean, std::hypot(here->halfWidth, there->halfWidth)};
-  return above(band, std::log(factor),
-               fmt::format("{} loss of {} over {}: {:.2g} here, {:.2g} in {}", nameOf(metric), scene_.rowOf(a),
-                           scene_.rowOf(b), std::exp(here->mean), std::exp(there->mean), control));
+  Comparison result =
+      above(band, std::log(factor),
+            fmt::format("{} loss of {} over {}: {:.2g} here, {:.2g} in {}", nameOf(metric), scene_.rowOf(a),
+                        scene_.rowOf(b), std::exp(here->mean), std::exp(there->mean), control));
+  // A ratio of losses that are mostly the reference's noise is nearer to 1 than the true one.
+  const auto isHidden = [&](const SceneLosses& scene) {
+    const LossComparisons own(scene);
+    return own.nearFloor(metric, scene.logLosses(a, metric)) && own.nearFloor(metric, scene.logLosses(b, metric));
+  };
+  if (isHidden(other) || (result.verdict != V::holds && isHidden(scene_))) {
+    result = {V::notJudged, 0, result.text + "; the reference's own noise hides a ratio"};
+  }
+  return result;
 }
 
 }  // namespace wavecrest

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -169,9 +169,15 @@ std::string originOf(const Metadata& metadata) {
   };
   std::string text;
   if (!value("method").empty()) text += fmt::format(", two halves by {}", value("method"));
+  const auto number = [&](const char* key) {  // whatever the locale
+    const std::string digits = value(key);
+    double found = 0;
+    std::from_chars(digits.data(), digits.data() + digits.size(), found);
+    return found;
+  };
   // A reference with a merge radius is biased. Files of earlier versions have the radius, but no word of the bias.
-  if (std::strtod(value("radius").c_str(), nullptr) > 0) text += ", biased by its merge radius";
-  const double error = std::strtod(value("relative_error").c_str(), nullptr);
+  if (number("radius") > 0) text += ", biased by its merge radius";
+  const double error = number("relative_error");
   if (error > 0) text += fmt::format(", off by about {} % of a sample's value", formatSignificant(100 * error, 2));
   return text;
 }

@@ -75,8 +75,8 @@ void addImages(ReportScene& scene, const PreparedReference& reference,
     const ComparedImage test = reference.prepareTest(last, readImage(last));
     measured[i] = metric.measure(reference, test, true);
     range = std::max(range, quantile(measured[i].map, kShownPart));
-    series.finalImage =
-        shownImage(fmt::format("{}, {}", series.label, formatSeconds(finalSeconds(series))), reference.pictureOf(test));
+    series.finalImage = shownImage(fmt::format("{}, {}", series.label, formatSeconds(files[i].back().seconds)),
+                                   reference.pictureOf(test));
     if (!scene.reference.floats.empty()) addFloats(series.finalImage, test.file);
   }
   for (size_t i = 0; i < scene.series.size(); ++i) {

@@ -126,7 +126,7 @@ struct ReportClaim {
 
 struct ConvergenceReport {
   std::string title = {};
-  std::vector<std::string> remarks = {};  ///< what a reader must know first: runs that are missing, mixed environments
+  std::vector<std::string> remarks = {};  ///< what a reader must know first: noisy references, unequal runs
   std::vector<ReportMetric> metrics = {};
   std::vector<ReportScene> scenes = {};
   std::vector<ReportClaim> claims = {};

@@ -122,13 +122,13 @@ ScenePlot biasPlot(const ReportScene& scene) {
 }  // namespace
 
 std::string seriesClass(const ReportScene& scene, const ReportSeries& series) {
-  // Count the series of the same method before this one: the first has solid lines.
+  // Count the series of the same method before this one: the first has solid lines, the next ones dashes of five kinds.
   int earlier = 0;
   for (const ReportSeries& other : scene.series) {
     if (&other == &series) break;
     earlier += other.method == series.method ? 1 : 0;
   }
-  return fmt::format("m-{} variant-{}", escapeHtml(series.method), earlier);
+  return fmt::format("m-{} variant-{}", escapeHtml(series.method), earlier % 6);
 }
 
 std::vector<ScenePlot> scenePlots(const ConvergenceReport& report, const ReportScene& scene) {

@@ -157,6 +157,7 @@ bool isAheadOfAll(const ReportScene& scene, const ReportSeries& series, Better b
 
 bool isClearlyBest(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
                    size_t metricIndex) {
+  if (std::isnan(finalValue(series, metricIndex))) return false;
   const std::vector<double> own = finalValues(series, metric, metricIndex);
   return isAheadOfAll(scene, series, [&](const ReportSeries& other) {
     const std::vector<double> values = finalValues(other, metric, metricIndex);

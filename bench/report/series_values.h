@@ -20,7 +20,7 @@ struct CurvePoint {
 /// One point for each number of a snapshot, in their order. Snapshots that no run has a finite value for are left out.
 std::vector<CurvePoint> meanCurve(const ReportSeries& series, size_t metric);
 
-/// The value of a metric at the end of a series: mean over its runs, NaN if there is none.
+/// The value of a metric at the end of a series: mean over its runs, NaN if one ends without a number.
 double finalValue(const ReportSeries& series, size_t metric);
 
 /// The extremes of its runs there.

@@ -19,9 +19,10 @@ std::optional<Factor> speedUp(const ReportSeries& series, const ReportSeries& ba
   const bool ahead = !isBetter(metric, base, own);
   const std::optional<TargetTime> time =
       timeToReach(ahead ? series : baseline, metric, metricIndex, ahead ? base : own);
-  if (!time || !(time->seconds > 0)) return std::nullopt;
-  if (ahead) return Factor{.factor = finalSeconds(baseline) / time->seconds, .bound = time->atMost ? 1 : 0};
-  return Factor{.factor = time->seconds / finalSeconds(series), .bound = time->atMost ? -1 : 0};
+  const double end = finalSeconds(ahead ? baseline : series);
+  if (!time || !(time->seconds > 0) || !(end > 0)) return std::nullopt;
+  if (ahead) return Factor{.factor = end / time->seconds, .bound = time->atMost ? 1 : 0};
+  return Factor{.factor = time->seconds / end, .bound = time->atMost ? -1 : 0};
 }
 
 std::string renderSpeedUps(const ConvergenceReport& report) {

@@ -18,9 +18,11 @@ void putSnapshots(Database& database, int64_t run, const std::vector<SnapshotRec
 }
 
 // Inserts a run with its stages and snapshots. The caller holds the transaction. Fails by the table's UNIQUE constraint
-// if the run is there already. What was found of the method's bias is of the runs before, and goes.
+// if the run is there already. What was found of the method's bias, and of the study's findings, is of the runs before,
+// and goes.
 void insertRun(Database& database, const RunRecord& run) {
   Statement(database, "DELETE FROM bias WHERE scene = ? AND method = ?").bind(run.scene, run.method).run();
+  Statement(database, "DELETE FROM claim").run();
   Statement(database, "INSERT INTO run(scene, method, seed, state, reason, stats) VALUES(?, ?, ?, ?, ?, ?)")
       .bind(run.scene, run.method, run.seed, toString(run.state), run.reason, run.stats)
       .run();

@@ -1,5 +1,5 @@
 // Tests of whether two things differ, by ranks: one slow run that another program caused weighs no more than a run that
-// is slow by a little. Distributions are exact, with ties, so small samples keep their level.
+// is slow by a little. Distributions of small samples are exact, with ties, so they keep their level.
 #pragma once
 
 #include <span>
@@ -13,8 +13,9 @@ struct RankTest {
 };
 
 // Wilcoxon's signed-rank test of paired differences: without a difference d is as likely as -d. Differences of 0 are
-// left out; probability 1 if none is left.
+// left out; probability 1 if none is left. Exact up to kMostExactPairs of them, by the normal approximation above.
 RankTest signedRankTest(std::span<const double> differences);
+constexpr size_t kMostExactPairs = 1000;
 
 // Mann and Whitney's test of two independent samples: exact up to kMostExact values together, by the normal
 // approximation above. Probability 1 if either is empty.

@@ -116,6 +116,9 @@ TEST(IsClearlyBest, takesSeedsThatDoNotOverlap) {
   scene.series.push_back(seeds(0.4, 0.8));
   EXPECT_FALSE(isClearlyBest(scene, scene.series[1], rising(), 0)) << "0.6 give or take 2.5";
   scene.series.resize(2);
+  scene.series[1].runs.push_back(seriesOf({{{1, 0.1}, {100, kNan}}}).runs[0]);
+  EXPECT_FALSE(isClearlyBest(scene, scene.series[1], rising(), 0))
+      << "a seed ends without a number, and so does the mean";
   scene.series[1].runs.resize(1);
   EXPECT_FALSE(isClearlyBest(scene, scene.series[1], rising(), 0)) << "one seed has no band";
   EXPECT_FALSE(isClearlyFastest(scene, scene.series[1], rising(), 0, 0.7)) << "whoever else gets there";

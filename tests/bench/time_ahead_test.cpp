@@ -112,6 +112,13 @@ TEST(SpeedUp, isABoundWhereTheFirstSnapshotIsGoodEnough) {
   EXPECT_FALSE(speedUp(none, falling(1, {1}), kError, 0));
 }
 
+TEST(SpeedUp, isNoneOverWhatTookNoTime) {
+  ReportSeries instant = falling(1, {64});
+  for (ReportPoint& point : instant.runs[0].points) point.seconds = 0;
+  EXPECT_FALSE(speedUp(falling(1, {1}), instant, kError, 0));
+  EXPECT_FALSE(speedUp(instant, falling(1, {1}), kError, 0));
+}
+
 TEST(SpeedUp, isOneOverItselfThoughTheErrorRises) {
   // A firefly in the last snapshot: the error of the end was there after 2 s.
   ReportSeries rising = falling(1, {1});

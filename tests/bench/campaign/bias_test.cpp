@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <random>
 
@@ -92,6 +93,8 @@ TEST(MeasureBiases, takesTheSnapshotsThatAllSeedsHave) {
   EXPECT_DOUBLE_EQ(biases[0].biasSquared, 8);  // errors 2 and 4
   EXPECT_DOUBLE_EQ(biases[0].variance, 2);
   EXPECT_TRUE(measureBiases(std::span(runs).first(1), reference).empty());
+  std::filesystem::remove(folder.path("a.exr"));
+  EXPECT_TRUE(measureBiases(runs, reference).empty()) << "an image that is no longer there";
 }
 
 }  // namespace

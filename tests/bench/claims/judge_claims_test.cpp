@@ -119,6 +119,33 @@ TEST(JudgeClaims, worseHereComparesWithTheControl) {
   EXPECT_EQ(made(1.2).verdict(worse), kNotJudged);
 }
 
+// Losses near the reference's noise have a ratio near 1, whatever the true one.
+TEST(JudgeClaims, worseHereIsNotJudgedByAControlThatTheNoiseHides) {
+  Condition worse = condition(ConditionKind::worseHere, "ssim", {"ppm"}, {"bpt"});
+  worse.factor = 1.5;
+  worse.control = "box";
+  const auto verdict = [&](double noise) {
+    CampaignResults results = MadeUp()
+                                  .with("ppm", "ssim", {0.988, 0.9881})
+                                  .with("bpt", "ssim", {0.99, 0.9901})
+                                  .scene("box")
+                                  .with("ppm", "ssim", {0.6, 0.601})
+                                  .with("bpt", "ssim", {0.8, 0.801})
+                                  .results();
+    results.scenes.back().noiseFloors["ssim"] = 1 - noise;
+    return judgeClaim({.id = "c", .scene = "s", .statement = "so", .conditions = {worse}}, results).verdict;
+  };
+  EXPECT_EQ(verdict(0.001), kHolds);
+  EXPECT_EQ(verdict(0.009), kNotJudged);
+}
+
+TEST(JudgeClaims, evidenceNamesEachMethodThatWasNotMeasured) {
+  const MadeUp lt = MadeUp().with("lt", "rmse", {1, 1.01});
+  const std::string evidence = lt.judge(condition(ConditionKind::better, "rmse", {"bpt", "lt"}, {"pt"})).evidence;
+  EXPECT_NE(evidence.find("bpt was not measured"), std::string::npos) << evidence;
+  EXPECT_NE((" " + evidence).find(" pt was not measured"), std::string::npos) << evidence;
+}
+
 TEST(JudgeClaims, equal) {
   Condition equal = condition(ConditionKind::equal, "rmse", {"pt", "bpt"});
   equal.factor = 1.5;
@@ -423,6 +450,9 @@ TEST(JudgeClaims, runsOfTwoProcessorsAreNotCompared) {
   results.runs.front().stats = R"({"cpu": "B"})";
   EXPECT_EQ(judgeClaim(claim, results).figure,
             "in box, the control, runs of two processors stand side by side: A and B");
+  results.runs.front().stats = R"({"cpu": "A", "threads": 4})";
+  results.runs[1].stats = R"({"cpu": "A", "threads": 2})";
+  EXPECT_EQ(judgeClaim(claim, results).figure, "in box, the control, runs of 2 and of 4 threads stand side by side");
 }
 
 TEST(JudgeClaims, generalClaimsCountScenes) {

@@ -187,14 +187,16 @@ TEST(ResultsStore, aRunInPlaceOfAnotherTakesThatOnesBiasAway) {
   EXPECT_EQ(results.biases[0].method, "lt");
 }
 
-TEST(ResultsStore, aRunOfAnotherSeedTakesTheMethodsBiasAway) {
+TEST(ResultsStore, aRunOfAnotherSeedTakesTheMethodsBiasAndVerdictsAway) {
   const TemporaryFolder folder;
   ResultsStore store(folder.path("results.sqlite"));
   store.putScene(sampleScene());
   for (uint64_t seed = 1; seed <= 2; ++seed) store.putRun(sampleRun("box", "pt", seed));
   store.putBiases({{"box", "pt", 1, 2, 3, 2, 1}, {"box", "lt", 1, 2, 3, 2, 1}});
+  store.putClaims({{"c1", "box", "pt wins", "holds", "by far", "pt 0.1, lt 0.2"}});
   store.putRun(sampleRun("box", "pt", 3));
   const CampaignResults results = readResults(folder.folder());
+  EXPECT_TRUE(results.claims.empty()) << "verdicts on runs that were fewer";
   ASSERT_EQ(results.biases.size(), 1u);
   EXPECT_EQ(results.biases[0].method, "lt");
 }

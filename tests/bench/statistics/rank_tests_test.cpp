@@ -15,6 +15,22 @@ TEST(SignedRank, countsSignsAsUneven) {
   EXPECT_DOUBLE_EQ(signedRankTest(std::vector<double>{1, 2, 3, 4, 5, -6}).probability, 28.0 / 64);
 }
 
+// Beyond kMostExactPairs an approximation, in time and memory for a day of pairs.
+TEST(SignedRank, ofManyIsApproximatedAsWell) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.08, 1);
+  std::vector<double> differences(kMostExactPairs);
+  for (double& difference : differences) difference = noise(random);
+  const RankTest exact = signedRankTest(differences);
+  differences.push_back(1e-9);  // the least rank
+  const RankTest approximate = signedRankTest(differences);
+  EXPECT_GT(exact.probability, 1e-4);
+  EXPECT_LT(exact.probability, 0.3);
+  EXPECT_NEAR(approximate.probability / exact.probability, 1, 0.03);
+  EXPECT_EQ(approximate.side, exact.side);
+  EXPECT_EQ(signedRankTest(std::vector<double>(200000, -1)).side, -1);
+}
+
 TEST(SignedRank, sharesRanksAmongEqualValuesAndLeavesOutZeros) {
   EXPECT_DOUBLE_EQ(signedRankTest(std::vector<double>{1, 1, 0, 1, 1}).probability, 2.0 / 16);
   EXPECT_DOUBLE_EQ(signedRankTest(std::vector<double>{0, 0}).probability, 1);
