@@ -6,16 +6,10 @@
 #include <charconv>
 #include <string_view>
 
+#include "bench/results/whole_number.h"
+
 namespace wavecrest {
 namespace {
-
-// The number that is all of the word, or nothing.
-template <class Number>
-std::optional<Number> read(std::string_view word) {
-  Number number{};
-  const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  return error == std::errc() && rest == word.data() + word.size() ? std::optional(number) : std::nullopt;
-}
 
 // Whether a word has the form of a whole number: digits, perhaps after a minus.
 bool isWritten(const WholeRange&, std::string_view word) {
@@ -33,14 +27,14 @@ bool isWritten(const RealRange&, std::string_view word) {
 
 // Whether the number is in the range, or is the one exception (`also`).
 bool contains(const WholeRange& range, std::string_view word) {
-  const std::optional<int64_t> number = read<int64_t>(word);
+  const std::optional<int64_t> number = wholeNumber<int64_t>(word);
   if (number && (number == range.also || *number < 0)) return number == range.also || *number >= range.low;
-  const std::optional<uint64_t> natural = read<uint64_t>(word);  // may exceed int64_t
+  const std::optional<uint64_t> natural = wholeNumber<uint64_t>(word);  // may exceed int64_t
   return natural && *natural <= range.high && (range.low < 0 || *natural >= static_cast<uint64_t>(range.low));
 }
 
 bool contains(const RealRange& range, std::string_view word) {
-  const std::optional<double> number = read<double>(word);
+  const std::optional<double> number = wholeNumber<double>(word);
   return number && *number >= range.low && *number <= range.high;
 }
 

@@ -56,8 +56,7 @@ std::vector<BiasRecord> measureBiases(std::span<const RunRecord* const> runs, co
   std::vector<BiasRecord> biases;
   if (runs.size() < 2) return biases;
   for (const SnapshotRecord& first : runs[0]->snapshots) {
-    // The images of this number. Runs begin and end with different ones, and some are not kept, or
-    // no longer.
+    // The images of this number. Runs begin and end with different ones, and some images are not there.
     std::vector<Image> images;
     for (const RunRecord* run : runs) {
       const auto own = std::ranges::find(run->snapshots, first.number, &SnapshotRecord::number);

@@ -26,8 +26,7 @@ ErrorParts errorParts(std::span<const Image> images, const Reference& reference)
 // negative where noise decides. Nothing for a reference without halves.
 std::optional<double> unbiasedMse(const Image& image, const Reference& reference);
 
-// For every snapshot that all these runs of one scene and method have an image of, which is still there; empty for
-// fewer than two runs.
+// For every snapshot whose image is there for all these runs of one scene and method; empty for fewer than two runs.
 std::vector<BiasRecord> measureBiases(std::span<const RunRecord* const> runs, const Reference& reference);
 
 }  // namespace wavecrest

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "bench/results/whole_number.h"
 #include "bench/until/film_error.h"
 #include "metrics/metric_list.h"
 #include "metrics/noise_floor.h"
@@ -65,13 +65,6 @@ void visitInfo(Info& info, Visit visit) {
   visit("commit", info.commit);
 }
 
-// Whether all of the text is a number, which is then stored.
-template <class Number>
-bool parseNumber(const std::string& text, Number& number) {
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && rest == text.data() + text.size();
-}
-
 // The attributes of the file: the fields of ReferenceInfo, "biased", and the noise floors.
 Metadata toMetadata(const Reference& reference) {
   Metadata metadata;
@@ -105,9 +98,9 @@ struct FromMetadata {
   }
   template <class Number>
   void parse(const std::string& name, const std::string& text, Number& value) const {
-    if (!parseNumber(text, value)) {
-      throw ImageError(path.string(), fmt::format("attribute {} is '{}'", name, text), "expected a number");
-    }
+    const std::optional<Number> number = wholeNumber<Number>(text);
+    if (!number) throw ImageError(path.string(), fmt::format("attribute {} is '{}'", name, text), "expected a number");
+    value = *number;
   }
 };
 

@@ -64,8 +64,8 @@ std::string processorOf(const json& stats, const CampaignResults& results) {
   return stats.value("cpu", first);
 }
 
-// The runs of all methods have equal time and equally many threads of one processor, unless the campaign was extended
-// or its parts are of different machines: otherwise a text of what differs.
+// What differs between the runs of these methods, in words: their time, threads or processor, as in a campaign that is
+// being extended, or whose parts were rendered on different machines. Empty where all are equal.
 std::string unequalRuns(const std::set<std::string>& methods, const SceneLosses& scene) {
   std::optional<double> shortest, longest;
   std::set<std::string> processors;

@@ -99,8 +99,7 @@ SceneAnswer answerFor(const ReportScene& scene, const ReportMetric& metric, size
   answer.reached = first.time.has_value();
   answer.figure = first.time ? formatTime(*first.time) : formatSignificant(first.value);
   // Against a noisy reference not even an image without error reaches the target, or hardly.
-  const std::optional<double> floor =
-      metricIndex < scene.noiseFloors.size() ? scene.noiseFloors[metricIndex] : std::nullopt;
+  const std::optional<double> floor = noiseFloorOf(scene, metricIndex);
   if (!first.time && isNearFloor(metric, *metric.target, floor)) {
     answer.figure += fmt::format("; the reference allows {}", formatSignificant(*floor));
   } else if (const auto ahead = timeAhead(*first.series, metric, metricIndex, *metric.target, floor)) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -17,6 +16,7 @@
 #include "bench/report/series_facts.h"
 #include "bench/report/shown_metrics.h"
 #include "bench/results/noise_floors.h"
+#include "bench/results/whole_number.h"
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {
@@ -169,12 +169,7 @@ std::string originOf(const Metadata& metadata) {
   };
   std::string text;
   if (!value("method").empty()) text += fmt::format(", two halves by {}", value("method"));
-  const auto number = [&](const char* key) {  // whatever the locale
-    const std::string digits = value(key);
-    double found = 0;
-    std::from_chars(digits.data(), digits.data() + digits.size(), found);
-    return found;
-  };
+  const auto number = [&](const char* key) { return wholeNumber<double>(value(key)).value_or(0); };
   // A reference with a merge radius is biased. Files of earlier versions have the radius, but no word of the bias.
   if (number("radius") > 0) text += ", biased by its merge radius";
   const double error = number("relative_error");

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -16,6 +15,7 @@
 #include "bench/report/run_series.h"
 #include "bench/report/series_facts.h"
 #include "bench/report/shown_metrics.h"
+#include "bench/results/whole_number.h"
 #include "metrics/image/image_io.h"
 #include "metrics/noise_floor.h"
 
@@ -83,12 +83,9 @@ void readFloors(const fs::path& file, const ImageFile& image, std::vector<std::o
   for (size_t m = 0; m < metrics.size(); ++m) {
     const std::string text = attribute(image, kFloorPrefix + scoreName(*metrics[m], metrics[m]->score));
     if (text.empty()) continue;
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) {
-      throw ResultsError(fmt::format("{}: noise floor '{}'; expected a number", file.string(), text));
-    }
-    if (std::isfinite(value)) floors[m] = value;
+    const std::optional<double> value = wholeNumber<double>(text);
+    if (!value) throw ResultsError(fmt::format("{}: noise floor '{}'; expected a number", file.string(), text));
+    if (std::isfinite(*value)) floors[m] = *value;
   }
 }
 

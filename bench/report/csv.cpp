@@ -8,7 +8,6 @@
 #include "bench/report/html_text.h"
 #include "bench/report/series_values.h"
 #include "bench/report/time_ahead.h"
-#include "bench/statistics/time_to_loss.h"
 
 namespace wavecrest {
 namespace {
@@ -77,10 +76,10 @@ std::string summaryAsCsv(const ConvergenceReport& report) {
         const ReportMetric& metric = report.metrics[m];
         // The score at the end, its extremes over seeds and the noise floor.
         const Range range = finalRange(series, m);
-        const bool hasFloor = m < scene.noiseFloors.size() && scene.noiseFloors[m];
+        const std::optional<double> floor = noiseFloorOf(scene, m);
         append(csv, "{},{},{},{},{},{},{},{},{}", field(scene.name), field(series.method), field(series.label),
                series.runs.size(), field(metric.key), number(finalValue(series, m)), number(range.low),
-               number(range.high), hasFloor ? number(*scene.noiseFloors[m]) : "");
+               number(range.high), floor ? number(*floor) : "");
         // "yes" where the series is the best beyond noise, else empty.
         append(csv, ",{}", isClearlyBest(scene, series, metric, m) ? "yes" : "");
         // The time to the target. These columns stay empty for a metric without one.
@@ -106,15 +105,14 @@ std::string timesAsCsv(const ConvergenceReport& report) {
         const std::optional<size_t> m = findMetric(report, key);
         if (!m) continue;
         const ReportMetric& metric = report.metrics[*m];
-        const std::optional<double> floor = *m < scene.noiseFloors.size() ? scene.noiseFloors[*m] : std::nullopt;
+        const std::optional<double> floor = noiseFloorOf(scene, *m);
         append(csv, "{},{},{},{},{}", field(scene.name), field(series.method), field(series.label), key, target);
         const std::optional<TargetTime> time = timeToReach(series, metric, *m, target);
         append(csv, ",{},{}", time ? number(time->seconds) : "", time && time->atMost ? "yes" : "");
         const std::optional<TimeAhead> ahead = timeAhead(series, metric, *m, target, floor);
         if (ahead) {
-          const bool open = !(ahead->interval.high <= kFarthestTime * ahead->end);
           append(csv, ",{},{},{}", number(ahead->end + ahead->seconds), number(ahead->end + ahead->interval.low),
-                 open ? "" : number(ahead->end + ahead->interval.high));
+                 isOpen(*ahead) ? "" : number(ahead->end + ahead->interval.high));
         } else {
           csv += ",,,";
         }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -19,15 +18,6 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void failIn(const fs::path& file, size_t line, const std::string& wrong, const std::string& expected) {
   throw ResultsError(fmt::format("{}:{}: {}; expected {}", file.string(), line, wrong, expected));
-}
-
-// A number that is the whole text.
-template <class Number>
-std::optional<Number> wholeNumber(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
 }
 
 // "4", "0.5", "4s" or "250ms": seconds, finite and not negative.

@@ -41,7 +41,7 @@ std::string targetCell(const ReportScene& scene, const ReportSeries& series, con
   const std::optional<TargetTime> time = timeToReach(series, metric, metricIndex, *metric.target);
   const bool fastest = isClearlyFastest(scene, series, metric, metricIndex, *metric.target);
   std::string text = time ? formatTime(*time) : "–";
-  const std::optional<double> floor = scene.noiseFloors[metricIndex];
+  const std::optional<double> floor = noiseFloorOf(scene, metricIndex);
   if (const auto ahead = timeAhead(series, metric, metricIndex, *metric.target, floor)) {
     text += fmt::format(" <small>{}</small>", formatTimeAhead(*ahead));
   }

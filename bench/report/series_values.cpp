@@ -81,6 +81,10 @@ bool isBetter(const ReportMetric& metric, double a, double b) {
   return metric.higherIsBetter ? a > b : a < b;
 }
 
+std::optional<double> noiseFloorOf(const ReportScene& scene, size_t metric) {
+  return metric < scene.noiseFloors.size() ? scene.noiseFloors[metric] : std::nullopt;
+}
+
 double bestFinalValue(const ReportScene& scene, const ReportMetric& metric, size_t metricIndex) {
   double best = std::numeric_limits<double>::quiet_NaN();
   for (const ReportSeries& series : scene.series) {

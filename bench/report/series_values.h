@@ -39,6 +39,9 @@ double finalSeconds(const ReportSeries& series);
 /// Whether a is the better score. A number is better than no number.
 bool isBetter(const ReportMetric& metric, double a, double b);
 
+/// What an image without error scores against the scene's reference, where that is known.
+std::optional<double> noiseFloorOf(const ReportScene& scene, size_t metric);
+
 /// The best of the final values of all series of a scene; NaN if there is none.
 double bestFinalValue(const ReportScene& scene, const ReportMetric& metric, size_t metricIndex);
 

@@ -11,7 +11,7 @@ namespace wavecrest {
 
 /// The baseline's render time over the method's, to the larger of their errors at the end: the one that both reach. A
 /// bound where the first snapshot of the faster one has that error already. Nothing where one of them has no score, or
-/// the one that ends with the larger error is at time 0.
+/// took no time.
 std::optional<Factor> speedUp(const ReportSeries& series, const ReportSeries& baseline, const ReportMetric& metric,
                               size_t metricIndex);
 

@@ -36,12 +36,13 @@ std::optional<TimeAhead> timeAhead(const ReportSeries& series, const ReportMetri
       .seconds = after(reached->seconds), .interval = {after(reached->low), after(reached->high)}, .end = end};
 }
 
+bool isOpen(const TimeAhead& ahead) { return !(ahead.interval.high <= kFarthestTime * ahead.end); }
+
 std::string formatTimeAhead(const TimeAhead& ahead) {
   const std::string low = formatSeconds(roundedTime(ahead.interval.low)),
                     high = formatSeconds(roundedTime(ahead.interval.high));
-  const bool open = !(ahead.interval.high <= kFarthestTime * ahead.end);
   return fmt::format("about {} more ({}{})", formatSeconds(roundedTime(ahead.seconds)), low,
-                     open ? " or longer" : " to " + high);
+                     isOpen(ahead) ? " or longer" : " to " + high);
 }
 
 }  // namespace wavecrest

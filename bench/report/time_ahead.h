@@ -27,6 +27,9 @@ bool isNearFloor(const ReportMetric& metric, double target, std::optional<double
 std::optional<TimeAhead> timeAhead(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
                                    double target, std::optional<double> floor);
 
+/// Whether the interval's end is beyond what a curve is followed to, so that it may take any time longer.
+bool isOpen(const TimeAhead& ahead);
+
 /// "about 9 s more (7 s to 14 s)"; "or longer" in place of a high end beyond 100 times the render time.
 std::string formatTimeAhead(const TimeAhead& ahead);
 

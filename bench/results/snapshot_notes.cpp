@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include "bench/results/whole_number.h"
 
 namespace wavecrest {
 
@@ -30,9 +30,7 @@ std::vector<SnapshotRecord> snapshotsOfNotes(const nlohmann::ordered_json& rows)
     one.file = row.at(3).get<std::string>();
     if (row.size() <= 4) continue;
     for (const auto& [name, value] : row.at(4).items()) {
-      // Unlike strtod, from_chars does not depend on the locale. It reads inf and nan as well.
-      const auto text = value.get<std::string>();
-      std::from_chars(text.data(), text.data() + text.size(), one.values[name]);
+      one.values[name] = wholeNumber<double>(value.get<std::string>()).value_or(0);
     }
   }
   return snapshots;

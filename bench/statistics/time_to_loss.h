@@ -16,8 +16,8 @@ namespace wavecrest {
 // A line is not followed farther than so many times the time that it was fitted to.
 constexpr double kFarthestTime = 100;
 
-// Nor to losses within so many times that of an image without error, which the reference's noise makes as well: curves
-// are flatter there.
+// Nor to a loss below so many times that of an image without error: there the reference's noise is much of what is
+// measured, and the curve is flatter than the line.
 constexpr double kNearFloor = 2;
 
 // A snapshot. Those of a run are in order of time.
