@@ -33,7 +33,7 @@ TEST(Profiles, studyHasItsSizeLightPathsAndTimeForItsFindings) {
   EXPECT_EQ(study.effort("cornell-spheres").seconds, 12 * 60);
   EXPECT_EQ(study.effort("lafortune-room").seconds, 29 * 60);
   EXPECT_EQ(study.effort("pool-interior").seconds, 24 * 60);
-  EXPECT_EQ(study.effort("dragon-caustics-glossy").seconds, 40 * 60);
+  EXPECT_EQ(study.effort("dragon-caustics-glossy").seconds, 20 * 60);
   EXPECT_EQ(study.effort("veach-door").seconds, 53 * 60);
   EXPECT_EQ(study.effort("a-scene-of-others").seconds, 12 * 60);
   EXPECT_TRUE(study.effort("veach-door").logarithmicFirst);
