@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "bench/json_text.h"
 #include "bench/machine/machine_record.h"
@@ -13,6 +12,7 @@
 #include "cli/file_check.h"
 #include "cli/messages.h"
 #include "cli/pinning.h"
+#include "engine/tasks/processors.h"
 #include "engine/version.h"
 #include "library/option_ranges.h"
 #include "library/option_values.h"
@@ -71,9 +71,7 @@ void forEachBenchCase(const BenchOptions& options, const std::vector<Method>& me
   }
 }
 
-uint32_t benchThreads(const BenchOptions& options) {
-  return options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-}
+uint32_t benchThreads(const BenchOptions& options) { return threadsOrAll(options.threads); }
 
 // Seconds of --duration, or what the mode takes by default.
 double benchSeconds(const BenchOptions& options, double unlessGiven) {

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "bench/json_text.h"
 #include "cli/commands.h"
@@ -12,6 +11,7 @@
 #include "cli/scene_options.h"
 #include "engine/inspect/inspection.h"
 #include "engine/scene/scene_error.h"
+#include "engine/tasks/processors.h"
 #include "library/inspection_json.h"
 #include "library/option_ranges.h"
 #include "library/option_values.h"
@@ -134,7 +134,7 @@ int runInspect(const InspectOptions& options) {
   settings.accel = static_cast<Accel>(parseChoice("--accel", options.accel, kAccelNames));
   settings.instancing = static_cast<Instancing>(parseChoice("--instances", options.instances, kInstancingNames));
   settings.isa = bestIsa();
-  settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  settings.threads = threadsOrAll(options.threads);
   settings.waveSize = options.wave;
   takeProgramDefaults(settings);
   // Scene and facts.

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "bench/json_text.h"
 #include "bench/recommend/recommend.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/scene_options.h"
+#include "engine/tasks/processors.h"
 #include "library/option_ranges.h"
 #include "library/option_values.h"
 #include "metrics/ssim.h"
@@ -44,7 +44,7 @@ void runRecommend(const RecommendOptions& options) {
   // Settings of all pilots.
   RenderSettings settings;
   settings.isa = bestIsa();
-  settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  settings.threads = threadsOrAll(options.threads);
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   takeProgramDefaults(settings);
   const Recommendation result = recommend(scene, settings, request);

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <thread>
 
 #include "bench/claims/judge_claims.h"
 #include "bench/json_text.h"
@@ -15,6 +14,7 @@
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
 #include "engine/load/input_file.h"
+#include "engine/tasks/processors.h"
 #include "library/campaign_resume.h"
 #include "library/campaign_rows.h"
 #include "library/errors.h"
@@ -155,7 +155,7 @@ void checkCrops(const CampaignOptions& options, const CampaignSettings& settings
 RenderSettings renderSettings(const CampaignOptions& options) {
   RenderSettings render;
   if (options.threads != 0) requireInRange("--threads", options.threads, kThreadRange);
-  render.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  render.threads = threadsOrAll(options.threads);
   render.isa = parseIsaOption(options.isa);
   render.precision =
       static_cast<Precision>(parseChoice("--precision", get(options, "--precision", "float"), kPrecisionNames));

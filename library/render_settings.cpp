@@ -2,11 +2,10 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <optional>
 #include <string_view>
-#include <thread>
 
+#include "engine/tasks/processors.h"
 #include "library/errors.h"
 #include "library/option_values.h"
 
@@ -50,7 +49,7 @@ void refuseOptionsOfOtherMethods(const api::RenderOptions& options, Method metho
       {"--radius-alpha", options.radiusAlpha != byDefault.radiusAlpha, mergesPaths, "does not merge"},
       {"--merge-vertices", options.mergeVertices != byDefault.mergeVertices, choosesMergeVertices,
        "has no choice of where to merge"},
-      {"--light-paths", options.lightPaths != 0, mergesPaths, "has one light path per camera path"},
+      {"--light-paths", options.lightPaths != 0, mergesPaths, "traces no photons to merge with"},
       {"--direct-pass", options.directPass, isPpm, "has no such choice"},
       {"--connection-roulette", options.connectionRoulette != byDefault.connectionRoulette, hasConnectionRoulette,
        "has no roulette of connections"},
@@ -125,7 +124,7 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
   settings.instancing = static_cast<Instancing>(parseChoice("--instances", options.instances, kInstancingNames));
   settings.isa = parseIsaOption(options.isa);
   settings.seed = options.seed;
-  settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  settings.threads = threadsOrAll(options.threads);
   settings.waveSize = options.wave;
   settings.measureStages = options.measureStages;
   settings.metropolis = chosenChains(options);

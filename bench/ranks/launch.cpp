@@ -1,13 +1,12 @@
 #include "bench/ranks/launch.h"
 
-#include <sched.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
-#include <vector>
+
+#include "engine/tasks/processors.h"
 
 namespace wavecrest {
 namespace {
@@ -33,25 +32,6 @@ constexpr Launcher kLaunchers[] = {
     {"srun", "SLURM_STEP_NUM_TASKS", "SLURM_PROCID"},
 };
 
-// The numbers of the processors in the affinity mask.
-std::vector<uint32_t> processorsOfThisProcess() {
-  std::vector<uint32_t> processors;
-  // Masks grow with the machine: the call fails until there is room for all of its processors.
-  for (int most = CPU_SETSIZE; most <= 1 << 20; most *= 4) {
-    cpu_set_t* const set = CPU_ALLOC(static_cast<size_t>(most));
-    if (set == nullptr) break;
-    const size_t bytes = CPU_ALLOC_SIZE(static_cast<size_t>(most));
-    const bool known = sched_getaffinity(0, bytes, set) == 0;
-    for (int processor = 0; known && processor < most; ++processor) {
-      if (CPU_ISSET_S(static_cast<size_t>(processor), bytes, set))
-        processors.push_back(static_cast<uint32_t>(processor));
-    }
-    CPU_FREE(set);
-    if (known) break;
-  }
-  return processors;
-}
-
 }  // namespace
 
 std::optional<Launch> launchIn(const VariableLookup& variable) {
@@ -69,8 +49,6 @@ std::optional<Launch> launchIn(const VariableLookup& variable) {
 std::optional<Launch> launchOfThisProcess() {
   return launchIn([](const char* name) -> const char* { return std::getenv(name); });
 }
-
-uint32_t allowedProcessors() { return std::max(1u, static_cast<uint32_t>(processorsOfThisProcess().size())); }
 
 std::string placeOfThisProcess() {
   char host[256] = {};

@@ -23,9 +23,8 @@ std::optional<Launch> launchIn(const VariableLookup& variable);
 // In this process' environment.
 std::optional<Launch> launchOfThisProcess();
 
-// Processors that this process may run on, by its affinity mask; at least 1.
-uint32_t allowedProcessors();
-// The machine and those processors, in words: equal for processes that compete for the same ones.
+// The machine and the processors that this process may run on (engine/tasks/processors.h), in words: equal for
+// processes that compete for the same ones.
 std::string placeOfThisProcess();
 
 }  // namespace wavecrest

@@ -99,10 +99,12 @@ class Session {
   virtual void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) = 0;
 
   // Asks a running renderUntil to return once the waves under way are done. Safe from any thread and signal handler.
-  void interrupt() { interrupted_.store(true, std::memory_order_relaxed); }
+  // Sequentially consistent, as resume(): whoever looks for new reasons after a resume() finds those of interrupts that
+  // it has taken back.
+  void interrupt() { interrupted_.store(true); }
   bool interrupted() const { return interrupted_.load(std::memory_order_relaxed); }
   // Takes an interrupt() back, so that renderUntil goes on.
-  void resume() { interrupted_.store(false, std::memory_order_relaxed); }
+  void resume() { interrupted_.store(false); }
 
   virtual RenderStatistics statistics() const = 0;
   virtual const Film& film() const = 0;

@@ -11,6 +11,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <half.h>
+#include <oneapi/tbb/info.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@
 #include <memory>
 #include <mutex>
 #include <new>
-#include <thread>
+#include <system_error>
 
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/codecs.h"
@@ -162,14 +163,13 @@ void useBlockPoolOnce() {
   });
 }
 
-// Compression dominates the time of a write; blocks are compressed by a pool of threads. The bytes do not depend on
-// their number.
+// Compression dominates the time of a write; blocks are compressed by a pool of threads, as many as TBB has for
+// metrics: one for each processor of the affinity mask. The bytes do not depend on their number.
 int compressionThreads() {
   useBlockPoolOnce();
   static std::once_flag once;
   std::call_once(once, [] {
-    const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    if (Imf::globalThreadCount() == 0) Imf::setGlobalThreadCount(threads);
+    if (Imf::globalThreadCount() == 0) Imf::setGlobalThreadCount(oneapi::tbb::info::default_concurrency());
   });
   return std::max(1, Imf::globalThreadCount());  // a forked child has none, and compresses by itself
 }

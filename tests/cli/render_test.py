@@ -211,6 +211,14 @@ class Statistics(CommandTest):
         busy = sum(s["seconds"] for s in stats["stages"])
         self.assertLessEqual(busy, 2 * stats["render_seconds"] * 1.05 + 0.05)
 
+    def test_threads_are_by_default_those_of_the_affinity_mask(self):
+        allowed = os.sched_getaffinity(0)
+        self.addCleanup(os.sched_setaffinity, 0, allowed)
+        for processors in (allowed, {min(allowed)}):
+            os.sched_setaffinity(0, processors)
+            self.run_wavecrest("render", "cornell-diffuse", "--size", "8x8", "--spp", "1", "--stats", "s.json")
+            self.assertEqual(read_json(self.path("s.json"))["threads"], len(processors))
+
     def test_pinned_threads_have_a_hardware_thread_each_and_give_the_same_image(self):
         self.render("--spp", "2", "-o", "plain.pfm", "--stats", "plain.json")
         self.assertEqual(read_json(self.path("plain.json"))["pinned"]["cpus"], [])

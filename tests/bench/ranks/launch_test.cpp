@@ -49,17 +49,15 @@ TEST(LaunchTest, aloneIsNoLaunch) {
   EXPECT_TRUE(launchWith({{"PMI_SIZE", "2"}, {"PMI_RANK", "1"}, {"WAVECREST_MPI", "on"}}));
 }
 
-TEST(LaunchTest, processorsAreThoseOfTheMask) {
+TEST(LaunchTest, aPlaceIsTheProcessorsOfTheMask) {
   cpu_set_t before, one;
   ASSERT_EQ(sched_getaffinity(0, sizeof(before), &before), 0);
-  EXPECT_EQ(allowedProcessors(), static_cast<uint32_t>(CPU_COUNT(&before)));
   const std::string place = placeOfThisProcess();
   int cpu = 0;
   while (!CPU_ISSET(cpu, &before)) ++cpu;
   CPU_ZERO(&one);
   CPU_SET(cpu, &one);
   ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
-  EXPECT_EQ(allowedProcessors(), 1u);
   EXPECT_EQ(placeOfThisProcess() == place, CPU_COUNT(&before) == 1);
   ASSERT_EQ(sched_setaffinity(0, sizeof(before), &before), 0);
 }
