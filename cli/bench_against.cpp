@@ -36,7 +36,8 @@ nlohmann::json readResult(const std::string& file) {
 
 int runBenchAgainst(const BenchOptions& options) {
   // Checks options before anything is rendered. The size is passed on to both builds as text.
-  if (access(options.against.c_str(), X_OK) != 0 || std::filesystem::is_directory(options.against)) {
+  std::error_code ignored;
+  if (access(options.against.c_str(), X_OK) != 0 || !std::filesystem::is_regular_file(options.against, ignored)) {
     throw UsageError(fmt::format("--against {}: cannot be run; expected the path of a wavecrest", options.against));
   }
   if (!options.size.empty()) parseSize("--size", options.size);

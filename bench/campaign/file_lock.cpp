@@ -9,7 +9,8 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <system_error>
+
+#include "metrics/image/real_name.h"
 
 namespace wavecrest {
 namespace {
@@ -32,13 +33,6 @@ bool isCurrent(int descriptor, const std::filesystem::path& path) {
   }, named{};
   return fstat(descriptor, &opened) == 0 && lstat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
          opened.st_dev == named.st_dev;
-}
-
-// The name that all links to the file lead to.
-std::filesystem::path realName(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::filesystem::path real = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
-  return error ? file : real;
 }
 
 // An empty or former lock, opened. Throws FileLockError.

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "bench/enumerator_name.h"
 #include "bench/json_text.h"
@@ -189,18 +187,9 @@ void writeCheckpoint(const std::string& file, const CheckpointHeader& header,
 }
 
 CheckpointHeader readCheckpointHeader(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::error_code error;
-  const uint64_t size = std::filesystem::file_size(file, error);
-  if (!in || error) throw ImageError(file, "cannot be read", "expected a readable file");
-  const auto read = [&](uint64_t count) {
-    std::vector<unsigned char> bytes(count);
-    in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
-    bytes.resize(static_cast<size_t>(in.gcount()));
-    return bytes;
-  };
-  const std::vector<unsigned char> frame = read(kFrame);
-  return parseHeader(file, read(headerBytes(file, frame, size)));
+  FileReader in(file);
+  const std::vector<unsigned char> frame = in.read(kFrame);
+  return parseHeader(file, in.read(headerBytes(file, frame, in.size())));
 }
 
 Checkpoint::Checkpoint(const std::string& file) : file_(file), bytes_(readFileBytes(file)) {

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "bench/results/results_error.h"
+#include "metrics/image/real_name.h"
 
 namespace wavecrest {
 
@@ -13,8 +14,8 @@ bool isWithinFolder(const fs::path& folder, const fs::path& file) {
   if (file.is_absolute() || std::find(file.begin(), file.end(), "..") != file.end()) return false;
   // Both as they are after all symbolic links. A loop of links is an error.
   std::error_code ofRoot, ofFile;
-  const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, ofRoot);
-  const fs::path real = fs::weakly_canonical((folder.empty() ? fs::path(".") : folder) / file, ofFile);
+  const fs::path root = realName(folder.empty() ? fs::path(".") : folder, ofRoot);
+  const fs::path real = realName((folder.empty() ? fs::path(".") : folder) / file, ofFile);
   if (ofRoot || ofFile) return false;
   return std::mismatch(root.begin(), root.end(), real.begin(), real.end()).first == root.end();
 }

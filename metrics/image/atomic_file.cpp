@@ -4,13 +4,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "metrics/image/image.h"
+#include "metrics/image/real_name.h"
 
 namespace wavecrest {
 namespace {
@@ -27,6 +30,7 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return fd_; }
+  int release() { return std::exchange(fd_, -1); }
 
  private:
   int fd_;
@@ -44,10 +48,23 @@ class Descriptor {
 // Comes after the target's name in every temporary name, before the numbers of the process and of the file.
 constexpr const char* kTemporary = ".tmp";
 
-// Unique among the processes and threads that may write beside each other.
+// Differs from call to call, in whatever thread, and between the processes of a machine.
 std::string temporaryName(const std::string& path) {
   static std::atomic<unsigned> counter{0};
   return path + kTemporary + "." + std::to_string(::getpid()) + "." + std::to_string(counter++);
+}
+
+// The first of the target's temporary names that make(name) does not find taken; empty, with errno, where it fails. A
+// killed process with the number of this one may have left files of such names: in a container, numbers begin at 1.
+template <class Make>
+std::string makeTemporary(const std::string& target, Make make) {
+  constexpr int kMostTries = 1000;
+  for (int i = 0; i < kMostTries; ++i) {
+    std::string name = temporaryName(target);
+    if (make(name)) return name;
+    if (errno != EEXIST) break;
+  }
+  return "";
 }
 
 // The target's name, of a name that temporaryName() may have given; empty for any other.
@@ -60,36 +77,42 @@ std::string targetOfTemporary(fs::path name) {
   return name.extension() == kTemporary ? name.stem().string() : "";
 }
 
-// What a chain of symbolic links ends at, or the path itself.
-std::string targetOf(const std::string& path) {
-  std::error_code error;
-  if (!fs::is_symlink(path, error)) return path;
-  const fs::path target = fs::canonical(path, error);
-  return error ? path : target.string();
-}
-
 // Devices and pipes, which a new file must not take the place of.
 bool isSpecial(const std::string& target) {
   struct stat info {};
   return ::stat(target.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
+// What a chain of symbolic links ends at, or the path itself.
+std::string targetOf(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_symlink(path, error)) return path;
+  const fs::path target = realName(path, error);
+  if (!error) return target.string();
+  // The pipe behind /dev/stdout has no name of its own.
+  if (isSpecial(path)) return path;
+  throw ImageError(path, "is a link that leads to no file: " + error.message(), "expected one that does");
+}
+
 // Where the system names the files of this process, if it does.
 constexpr const char* kDescriptors = "/proc/self/fd/";
 
-// A descriptor of a new file without a name in the folder of `temporary`, which vanishes with this process; -1 where
+// A descriptor of a new file without a name in the folder of the target, which vanishes with this process; -1 where
 // the file system has no such files.
-int createUnnamed(const std::string& temporary) {
+int createUnnamed(const std::string& target) {
   if (::access(kDescriptors, X_OK) != 0) return -1;
-  const fs::path folder = fs::path(temporary).parent_path();
+  const fs::path folder = fs::path(target).parent_path();
   return ::open(folder.empty() ? "." : folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
 }
 
-// A descriptor of a new file. An existing file of that name is an error. path is for the message.
-int createTemporary(const std::string& path, const std::string& temporary) {
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file < 0) failWriting(path, "creating the file", errno);
-  return file;
+// A new file with a temporary name of the target, which is returned, and its descriptor. path is for the message.
+std::string createTemporary(const std::string& path, const std::string& target, int& descriptor) {
+  std::string name = makeTemporary(target, [&](const std::string& free) {
+    descriptor = ::open(free.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    return descriptor >= 0;
+  });
+  if (name.empty()) failWriting(path, "creating the file", errno);
+  return name;
 }
 
 // False, with errno, where not all of it could be written.
@@ -115,25 +138,38 @@ void removeFiles(const fs::path& folder, Chooses chooses) {
 
 }  // namespace
 
-// The file is read up to the size that it has when it is opened.
-std::vector<unsigned char> readFileBytes(const std::string& path) {
+FileReader::FileReader(const std::string& path) : path_(path) {
   // Without O_NONBLOCK opening a pipe would wait for a writer. It makes no difference for regular files.
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0) failReading(path, errno);
   struct stat info {};
   if (::fstat(file.get(), &info) != 0) failReading(path, errno);
   if (!S_ISREG(info.st_mode)) throw ImageError(path, "is not a regular file", "expected a file");
-  std::vector<unsigned char> bytes(static_cast<size_t>(info.st_size));
+  size_ = static_cast<uint64_t>(info.st_size);
+  descriptor_ = file.release();
+}
+
+FileReader::~FileReader() { ::close(descriptor_); }
+
+// Not beyond the size that the file had when it was opened, by which the bytes are allocated.
+std::vector<unsigned char> FileReader::read(uint64_t most) {
+  std::vector<unsigned char> bytes(static_cast<size_t>(std::min(most, size_ - position_)));
   size_t done = 0;
   while (done < bytes.size()) {
-    ssize_t count = ::read(file.get(), bytes.data() + done, bytes.size() - done);
+    const ssize_t count = ::read(descriptor_, bytes.data() + done, bytes.size() - done);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) failReading(path, errno);
+    if (count < 0) failReading(path_, errno);
     if (count == 0) break;  // shrunk while being read
     done += static_cast<size_t>(count);
   }
   bytes.resize(done);
+  position_ += done;
   return bytes;
+}
+
+std::vector<unsigned char> readFileBytes(const std::string& path) {
+  FileReader file(path);
+  return file.read(file.size());
 }
 
 void checkWritable(const std::string& path) {
@@ -151,8 +187,9 @@ void checkWritable(const std::string& path) {
     return;
   }
   // Whether the folder takes new files shows only when one is made.
-  const std::string temporary = temporaryName(target);
-  const Descriptor file(createTemporary(path, temporary));
+  int descriptor = -1;
+  const std::string temporary = createTemporary(path, target, descriptor);
+  const Descriptor file(descriptor);
   ::unlink(temporary.c_str());
 }
 
@@ -164,16 +201,14 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(targetOf(
     return;
   }
   // A file without a name leaves nothing behind if the process is killed.
-  const std::string temporary = temporaryName(target_);
-  descriptor_ = createUnnamed(temporary);
-  named_ = descriptor_ < 0;
-  if (named_) descriptor_ = createTemporary(path, temporary);
-  temporary_ = temporary;
+  replaces_ = true;
+  descriptor_ = createUnnamed(target_);
+  if (descriptor_ < 0) temporary_ = createTemporary(path, target_, descriptor_);
 }
 
 AtomicFile::~AtomicFile() {
   ::close(descriptor_);
-  if (named_) ::unlink(temporary_.c_str());
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
 void AtomicFile::write(std::span<const unsigned char> bytes) {
@@ -186,18 +221,18 @@ void AtomicFile::seek(uint64_t position) {
 
 void AtomicFile::commit() {
   // The bytes reach the device before the name does, so a crash in between leaves the old file.
-  if (temporary_.empty()) return;
+  if (!replaces_) return;
   if (::fsync(descriptor_) != 0) failWriting(path_, "flushing", errno);
-  if (!named_) {
+  if (temporary_.empty()) {
     const std::string unnamed = kDescriptors + std::to_string(descriptor_);
-    if (::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0) {
-      failWriting(path_, "naming the file", errno);
-    }
-    named_ = true;
+    temporary_ = makeTemporary(target_, [&](const std::string& free) {
+      return ::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, free.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    });
+    if (temporary_.empty()) failWriting(path_, "naming the file", errno);
   }
   if (std::rename(temporary_.c_str(), target_.c_str()) != 0) failWriting(path_, "renaming", errno);
-  named_ = false;
   temporary_.clear();
+  replaces_ = false;
 }
 
 void writeFileAtomically(const std::string& path, std::span<const unsigned char> bytes) {
@@ -212,7 +247,7 @@ void writeFileAtomically(const std::string& path, std::string_view text) {
 
 void removeTemporaries(const std::string& path) {
   // The folder of a bare file name is the current one, which only the absolute path names.
-  const fs::path target = fs::absolute(targetOf(path));
+  const fs::path target = realName(path);
   const std::string own = target.filename().string();
   removeFiles(target.parent_path(), [&](const std::string& name) { return targetOfTemporary(name) == own; });
 }

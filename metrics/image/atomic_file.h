@@ -10,13 +10,32 @@
 
 namespace wavecrest {
 
-// The file's bytes. Throws ImageError when it is missing, unreadable or not a regular file.
+// A file that is read from its beginning. Throws ImageError where it is missing, cannot be read, or is no regular file:
+// opening a pipe could wait forever, and a device may have no end.
+class FileReader {
+ public:
+  explicit FileReader(const std::string& path);
+  ~FileReader();
+  FileReader(const FileReader&) = delete;
+  FileReader& operator=(const FileReader&) = delete;
+  uint64_t size() const { return size_; }  // when it was opened
+  // The next bytes: at most `most`, fewer where the file ends.
+  std::vector<unsigned char> read(uint64_t most);
+
+ private:
+  std::string path_;
+  int descriptor_ = -1;
+  uint64_t size_ = 0, position_ = 0;
+};
+
+// All bytes of a file. Throws as FileReader does.
 std::vector<unsigned char> readFileBytes(const std::string& path);
 
 // A file that is replaced as a whole. write() fills a temporary file in the same folder, without a name where the file
 // system has such files; commit() flushes it to the device and renames it over the target. Whoever is destroyed without
-// commit() leaves the target as it was. If the target is a symbolic link, the file that it points to is replaced.
-// Devices and pipes are written to directly. Every member throws ImageError where it fails.
+// commit() leaves the target as it was. If the target is a symbolic link, the file that it points to is replaced, or
+// made where there is none yet. Devices and pipes are written to directly. Every member throws ImageError where it
+// fails.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path);
@@ -25,15 +44,15 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
   void write(std::span<const unsigned char> bytes);
   // False for devices and pipes, which take bytes in order only.
-  bool isSeekable() const { return !temporary_.empty(); }
+  bool isSeekable() const { return replaces_; }
   // Where the next write goes, from the beginning.
   void seek(uint64_t position);
   void commit();
 
  private:
   std::string path_, target_;
-  std::string temporary_;  // empty: committed, or written to as it is
-  bool named_ = false;     // the temporary file has its name
+  bool replaces_ = false;  // the target is still to be replaced; not where it is written to as it is
+  std::string temporary_;  // the name of the temporary file, while it has one
   int descriptor_ = -1;
 };
 

@@ -254,11 +254,13 @@ class Received(CommandTest):
         self.assertTrue((self.folder / "images/unfinished.cornell-diffuse.pt.1.0000.exr").exists())
 
     def test_a_report_does_not_write_through_links(self):
-        os.remove(self.path("a/report.html"))
-        os.symlink("../precious.exr", self.path("a/report.html"))
-        result = self.run_wavecrest("report", "a", expect=INPUT)
-        self.assert_one_error_line(result, r".*'report\.html' leads out of it")
+        for target in ("../precious.exr", "../absent.html"):
+            os.remove(self.path("a/report.html"))
+            os.symlink(target, self.path("a/report.html"))
+            result = self.run_wavecrest("report", "a", expect=INPUT)
+            self.assert_one_error_line(result, r".*'report\.html' leads out of it")
         self.assertEqual(pathlib.Path(self.path("precious.exr")).read_text(), "text")
+        self.assertFalse((self.folder / "absent.html").exists())
 
     def test_links_within_the_folder_are_followed(self):
         os.mkdir(self.path("a/disk"))

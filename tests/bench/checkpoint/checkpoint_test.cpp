@@ -204,6 +204,9 @@ TEST_F(CheckpointTest, otherFilesAreNoCheckpoints) {
   }
   EXPECT_THROW(Checkpoint(folder_.path("missing")), ImageError);
   EXPECT_THROW(Checkpoint(folder_.folder().string()), ImageError);
+  EXPECT_THROW(readCheckpointHeader(folder_.path("missing")), ImageError);
+  EXPECT_THROW(readCheckpointHeader(folder_.folder().string()), ImageError);
+  EXPECT_THROW(readCheckpointHeader("/dev/zero"), ImageError);
 }
 
 // Whether the folder's file system has files without names.
