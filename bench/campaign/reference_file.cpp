@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "bench/image_attributes.h"
 #include "bench/results/whole_number.h"
 #include "bench/until/film_error.h"
 #include "metrics/metric_list.h"
@@ -16,8 +17,6 @@ namespace wavecrest {
 namespace {
 
 // Names of attributes and layers.
-constexpr const char* kPrefix = "wavecrest:";
-constexpr const char* kFloorPrefix = "wavecrest:noise_floor.";
 constexpr const char *kDifference = "difference", *kVariance = "variance";
 
 // Significant bits that are kept: of the layers of a whole reference, and of the mean and the difference of a compact
@@ -68,11 +67,11 @@ void visitInfo(Info& info, Visit visit) {
 // The attributes of the file: the fields of ReferenceInfo, "biased", and the noise floors.
 Metadata toMetadata(const Reference& reference) {
   Metadata metadata;
-  visitInfo(reference.info, [&](const char* name, const auto& value) {
-    metadata[std::string(kPrefix) + name] = fmt::format("{}", value);
-  });
-  metadata[std::string(kPrefix) + "biased"] = reference.info.isBiased() ? "true" : "false";
-  for (const auto& [name, value] : reference.noiseFloors) metadata[kFloorPrefix + name] = fmt::format("{}", value);
+  visitInfo(reference.info,
+            [&](const char* name, const auto& value) { metadata[attributeName(name)] = fmt::format("{}", value); });
+  metadata[attributeName("biased")] = reference.info.isBiased() ? "true" : "false";
+  const std::string floor = attributeName(kNoiseFloorKey);
+  for (const auto& [name, value] : reference.noiseFloors) metadata[floor + name] = fmt::format("{}", value);
   return metadata;
 }
 
@@ -82,17 +81,16 @@ struct FromMetadata {
   const Metadata& metadata;
 
   void operator()(const char* name, std::string& value) const {
-    const auto entry = metadata.find(std::string(kPrefix) + name);
-    if (entry != metadata.end()) value = entry->second;
+    if (const std::string* const text = findAttribute(metadata, name)) value = *text;
   }
   template <class Number>
   void operator()(const char* name, Number& value) const {
-    const auto entry = metadata.find(std::string(kPrefix) + name);
-    if (entry == metadata.end()) return;
-    parse(entry->first, entry->second, value);
+    const std::string* const text = findAttribute(metadata, name);
+    if (text == nullptr) return;
+    parse(attributeName(name), *text, value);
     // Unlike noise floors, none of these may be just any number.
     if (!(value >= 0 && static_cast<double>(value) < std::numeric_limits<double>::infinity())) {
-      throw ImageError(path.string(), fmt::format("attribute {} is {}", entry->first, entry->second),
+      throw ImageError(path.string(), fmt::format("attribute {} is {}", attributeName(name), *text),
                        "expected a finite number, 0 or more");
     }
   }
@@ -178,15 +176,15 @@ Reference readReference(const std::filesystem::path& path) {
   // Fields and noise floors, from the attributes.
   const FromMetadata from{path, file.metadata};
   visitInfo(reference.info, from);
+  const std::string floor = attributeName(kNoiseFloorKey);
   for (const auto& [name, text] : file.metadata) {
-    if (name.starts_with(kFloorPrefix)) {
-      from.parse(name, text, reference.noiseFloors[name.substr(std::string_view(kFloorPrefix).size())]);
-    }
+    if (name.starts_with(floor)) from.parse(name, text, reference.noiseFloors[name.substr(floor.size())]);
   }
   // Only references have the attribute of the relative error. A plain render has no halves, so it is read without a
   // difference.
-  if (file.metadata.contains(std::string(kPrefix) + "relative_error"))
+  if (findAttribute(file.metadata, "relative_error") != nullptr) {
     reference.difference = readExrLayer(path.string(), kDifference);
+  }
   return reference;
 }
 

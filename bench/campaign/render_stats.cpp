@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "bench/enumerator_name.h"
+#include "bench/image_attributes.h"
 #include "bench/machine/machine_record.h"
+#include "bench/stats_rates.h"
 #include "engine/plan/render_plan.h"
 #include "engine/scene/hash_text.h"
 #include "engine/version.h"
@@ -111,9 +113,6 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
                                    const RenderStatistics& statistics, double loadSeconds, double wallSeconds,
                                    const std::vector<SnapshotRecord>& snapshots) {
   const double seconds = statistics.renderSeconds;
-  const uint64_t rays = statistics.counters.raysClosest + statistics.counters.raysShadow;
-  // Before any render time has passed, rates are 0.
-  const auto perSecond = [&](uint64_t count) { return seconds > 0 ? static_cast<double>(count) / seconds : 0.0; };
   // Stages and snapshots are arrays of objects.
   nlohmann::ordered_json stages = nlohmann::ordered_json::array();
   for (const auto& stage : statistics.stages) {
@@ -126,7 +125,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
                             {"iterations", snapshot.iterations},
                             {"file", snapshot.file}});
   }
-  // Scalars of every render. Rates are per second of render time; lt counts light paths.
+  // Scalars of every render. Rates follow from the others.
   nlohmann::ordered_json stats = {
       {"version", kVersion},
       {"commit", kCommit},
@@ -161,9 +160,8 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"render_wall_seconds", statistics.renderWallSeconds},
       {"wall_seconds", wallSeconds},
       {"cpu_seconds", statistics.cpuSeconds},
-      {"paths_per_second",
-       perSecond(statistics.renderedBy(settings.method) == Method::lt ? statistics.lightPaths : statistics.paths)},
-      {"rays_per_second", perSecond(rays)},
+      {"paths_per_second", 0.0},
+      {"rays_per_second", 0.0},
       {"bytes_per_path", statistics.bytesPerPath},
       {"light_bytes", statistics.memory.lightVertices + statistics.memory.photonMap},
       {"peak_memory_bytes", peakMemoryBytes()},
@@ -179,6 +177,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"snapshots", snapshotRows},
   };
   addMethodStats(scene, settings, statistics, stats);
+  setRates(stats);
   return stats;
 }
 
@@ -296,8 +295,9 @@ nlohmann::ordered_json mergeRadiusJson(const MergeRadius& radius) {
 Metadata statsMetadata(const nlohmann::ordered_json& stats) {
   Metadata out;
   for (const auto& [key, value] : stats.items()) {
-    // Arrays and objects are left out.
-    if (value.is_primitive()) out["wavecrest:" + key] = value.is_string() ? value.get<std::string>() : value.dump();
+    // Arrays and objects are left out, but for the target of a guide, which makes another series of a method.
+    if (key == "guide" && value.is_object()) out[attributeName("guide.target")] = value.at("target").get<std::string>();
+    if (value.is_primitive()) out[attributeName(key)] = value.is_string() ? value.get<std::string>() : value.dump();
   }
   return out;
 }

@@ -31,7 +31,7 @@ nlohmann::ordered_json choiceJson(const MethodChoice& choice);
 // What gpt was asked to learn, and has learned.
 nlohmann::ordered_json guideJson(const RenderSettings& settings, const RenderStatistics& statistics);
 
-// Every scalar of a stats object as a string attribute of an image, its key after "wavecrest:".
+// Every scalar of a stats object as a string attribute of an image (bench/image_attributes.h), and `guide.target`.
 Metadata statsMetadata(const nlohmann::ordered_json& stats);
 
 }  // namespace wavecrest

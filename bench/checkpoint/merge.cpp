@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "bench/checkpoint/merged_stats.h"
 #include "bench/until/film_error.h"
 #include "bench/until/until.h"
 #include "engine/state/state_stream.h"
@@ -72,34 +73,6 @@ class Spread {
   double weight_ = 0, firstWeight_ = 0;
   size_t parts_ = 0;
 };
-
-bool isSummed(std::string_view key) {
-  constexpr std::array<std::string_view, 21> kKeys{"camera_paths",   "light_paths",         "mutations",
-                                                   "rays_closest",   "rays_shadow",         "connections",
-                                                   "merges",         "load_seconds",        "build_seconds",
-                                                   "render_seconds", "render_wall_seconds", "wall_seconds",
-                                                   "cpu_seconds",    "nonfinite_samples",   "saturated_splats",
-                                                   "close_pairs",    "paths_cut",           "throughput_cut",
-                                                   "cut_energy",     "direct_paths",        "parts"};
-  return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end();
-}
-
-// Scalars of the statistics of all parts: sums, and what is the same in all. Decisions, too, are the same.
-void addStats(Json& stats, const Json& more) {
-  Json sum = Json::object();
-  for (const auto& [key, value] : stats.items()) {
-    const auto other = more.find(key);
-    if (other == more.end() || !(value.is_primitive() || key == "decisions")) continue;
-    if (!isSummed(key)) {
-      if (value == *other) sum[key] = value;
-    } else if (value.is_number_float() || other->is_number_float()) {
-      sum[key] = value.get<double>() + other->get<double>();
-    } else if (value.is_number() && other->is_number()) {
-      sum[key] = value.get<uint64_t>() + other->get<uint64_t>();
-    }
-  }
-  stats = std::move(sum);
-}
 
 Json statsOf(const CheckpointHeader& header) {
   Json stats = header.notes.value("stats", Json::object());
@@ -200,7 +173,7 @@ MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
   Spread spread(halves);
   const std::string dependence = whyDependent(headers);
   bool comparable = true;
-  Json stats;
+  std::vector<Json> statsOfParts;
   double seconds = 0;
   // The next part is read while this one is added.
   const auto read = [&](size_t place) {
@@ -224,7 +197,6 @@ MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
       merged.header.holds.sum = true;  // of one part too: chains and guides are left out
       merged.film = std::move(film);
       merged.work = std::move(work);
-      stats = statsOf(header);
     } else {
       comparable = comparable && (film->maxSamples() == 0) == (merged.film->maxSamples() == 0);
       try {
@@ -234,13 +206,14 @@ MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
         failCheckpoint(files[index], error.what(), "expected parts of one render");
       }
       merged.header.holds.add(header.holds);
-      addStats(stats, statsOf(header));
     }
+    statsOfParts.push_back(statsOf(header));
     seconds += secondsIn(header);
   }
   const Holdings& holds = merged.header.holds;
   merged.header.render["process"] = "1/1";
   if (!holds.runs.empty()) merged.header.render["first_iteration"] = holds.runs.front().begin;
+  Json stats = mergedStats(statsOfParts);
   // Whole ones: a part that was stopped has pixels that lack the last one.
   stats["iterations"] = holds.lacking == 0 ? iterationsOf(holds) : merged.film->minSamples();
   merged.missing = holds.missing(merged.header.render.value("chains", uint64_t{0}));

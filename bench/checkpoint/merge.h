@@ -19,7 +19,7 @@
 namespace wavecrest {
 
 struct MergedParts {
-  CheckpointHeader header;  // of the sum; notes.stats: the parts' statistics, added up where they are counts or seconds
+  CheckpointHeader header;  // of the sum; notes.stats: mergedStats() of the parts'
   std::unique_ptr<Film> film;
   WorkDone work;
   std::string missing;  // of the whole image, in words; empty: nothing

@@ -23,7 +23,7 @@ SPP = 18  # no multiple of the number of parts
 class PartsTest(ShareTest):
     def arguments(self, method, *more, spp=SPP, scene="cornell-diffuse", seed=3, size="24x17"):
         return ["render", scene, "--size", size, "--threads", "1", "--seed", seed, "-m", method, "--spp", spp,
-                "--progress", "none", *METHODS[method], *more]  # fmt: skip
+                "--progress", "none", *METHODS.get(method, []), *more]  # fmt: skip
 
     def part(self, index, method="pt", *more, name="part", parts=PARTS, expect=DONE, **keywords):
         file = f"{name}{index}"
@@ -39,6 +39,20 @@ class PartsTest(ShareTest):
 
 
 class Sums(PartsTest):
+    def assert_statistics_of_all(self, merged, whole, method):
+        # Nothing that one render says gets lost.
+        self.assertEqual(set(whole) - set(merged) - set(merged.get("of_parts", {})), set(), method)
+        self.assertEqual(merged["snapshots"], [], method)
+        self.assertEqual([stage["name"] for stage in merged["stages"]], [stage["name"] for stage in whole["stages"]], method)
+        paths = merged["light_paths" if method == "lt" else "camera_paths"]
+        rays = merged["rays_closest"] + merged["rays_shadow"]
+        for rate, count in (("paths_per_second", paths), ("rays_per_second", rays)):
+            self.assertAlmostEqual(merged[rate] * merged["render_seconds"], count, delta=1e-9 * count, msg=f"{method}: {rate}")
+        if method == "mlt":
+            counts = [key for key in whole if key.endswith("_steps")] + ["dark_proposals", "stuck_runs", "longest_rejection"]
+            self.assertEqual({key: merged[key] for key in counts}, {key: whole[key] for key in counts})
+            self.assertAlmostEqual(merged["large_acceptance"], whole["large_acceptance"])
+
     def test_parts_of_each_method_add_up_to_one_render(self):
         for method in METHODS:
             self.run_wavecrest(*self.arguments(method, "-o", "whole.pfm", "--stats", "whole.json"))
@@ -52,6 +66,7 @@ class Sums(PartsTest):
                 self.assertEqual(merged[count], whole[count], f"{method}: {count}")
             self.assertEqual(merged["decisions"], whole["decisions"], method)
             self.assertEqual(merged["parts"], PARTS)
+            self.assert_statistics_of_all(merged, whole, method)
             self.assertEqual(read_exr_header(self.path("merged.exr"))["wavecrest:iterations"], str(SPP))
 
     def test_sums_of_splats_are_equal_to_the_bit(self):
@@ -237,6 +252,13 @@ class References(PartsTest):
         self.assertLess(float(attributes["wavecrest:relative_error"]), 3 * told)
         campaign = ["converge", "cornell-diffuse", "--methods", "pt", "--size", "64x48", "--spp", "4", "--out", "out"]
         self.run_wavecrest(*campaign, "--reference", "references", "--progress", "none")
+
+    def test_a_reference_of_a_choice_is_named_after_the_method_that_rendered_it(self):
+        files = self.all_parts("evcm", "--sampler", "independent", spp=16, size="64x48")
+        self.merge(*files, "--reference", "a.exr", "--stats", "merged.json")
+        attributes = read_exr_header(self.path("a.exr"))
+        self.assertEqual(attributes["wavecrest:method"], read_json(self.path("merged.json"))["choice"]["method"])
+        self.assertEqual(attributes["wavecrest:method_reason"], "parts of one render, chosen by the trials of evcm")
 
     def test_parts_that_are_no_halves_are_refused(self):
         for method, more, spp, said in (
