@@ -17,6 +17,7 @@
 #include <string_view>
 #include <thread>
 
+#include "bench/ranks/launch.h"
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {
@@ -34,12 +35,15 @@ std::string lastLine(const fs::path& file) {
   return last;
 }
 
-// This process' environment without the variables that are defaults of options.
+// This process' environment without the variables that are defaults of options. What is no option is passed on: how
+// large images may be, and that each process is on its own, as the child is started by the same launcher.
 std::vector<char*> environmentOfChild() {
   std::vector<char*> kept;
   for (char** variable = environ; *variable != nullptr; ++variable) {
-    const std::string_view name = *variable;
-    if (!name.starts_with("WAVECREST_") || name.starts_with(kImageLimitVariable)) kept.push_back(*variable);
+    const std::string_view text = *variable, name = text.substr(0, text.find('='));
+    if (!name.starts_with("WAVECREST_") || name == kImageLimitVariable || name == kMpiVariable) {
+      kept.push_back(*variable);
+    }
   }
   kept.push_back(nullptr);
   return kept;

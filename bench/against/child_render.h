@@ -35,8 +35,8 @@ class ScratchFolder {
 // Throws if no scratch folder can be created. To be called before measuring with child processes, which need one.
 inline void requireScratchFolders() { const ScratchFolder probe; }
 
-// What a render is asked for, in options that every version of wavecrest has. Variables such as WAVECREST_SAMPLER are
-// not passed on to it.
+// What a render is asked for, in options that every version of wavecrest has. Variables that are defaults of options,
+// such as WAVECREST_SAMPLER, are not passed on to it.
 struct ChildRequest {
   std::filesystem::path scene;
   std::string method;

@@ -101,8 +101,11 @@ uint64_t bytesOfSums(const Scene& scene, const RenderSettings& settings, uint32_
   return (2 + SumTree(0, ranks).children().size()) * stateBytes(scene, settings);
 }
 
-void FilmSum::sumUp(const std::vector<Bytes>& contributions) {
-  for (size_t i = 0; i < contributions.size(); ++i) add(contributions[i], i == 0);
+void FilmSum::sumUp(const std::vector<Bytes>& contributions, const std::function<void()>& added) {
+  for (size_t i = 0; i < contributions.size(); ++i) {
+    add(contributions[i], i == 0);
+    if (added) added();
+  }
   std::sort(processes_.begin(), processes_.end(), [](const auto& a, const auto& b) { return a.rank < b.rank; });
 }
 

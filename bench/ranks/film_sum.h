@@ -4,6 +4,7 @@
 // own, which is made once.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -41,9 +42,9 @@ uint64_t bytesOfSums(const Scene& scene, const RenderSettings& settings, uint32_
 class FilmSum {
  public:
   using Bytes = std::span<const unsigned char>;
-  // Adds all contributions, in their order. Throws StateError where one is of another render. What the sum held before
-  // is gone.
-  void sumUp(const std::vector<Bytes>& contributions);
+  // Adds all contributions, in their order, and calls added() after each. Throws StateError where one is of another
+  // render. What the sum held before is gone.
+  void sumUp(const std::vector<Bytes>& contributions, const std::function<void()>& added = nullptr);
   // The sum as a contribution behind so many bytes.
   std::vector<unsigned char> contribution(size_t head = 0) const;
 

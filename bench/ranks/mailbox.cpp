@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "bench/ranks/mpi_library.h"
@@ -98,7 +99,7 @@ void Mailbox::run() {
 void Mailbox::work() {
   Clock::time_point lastTick = Clock::now(), giveUp = Clock::time_point::max();
   for (;;) {
-    const bool sent = sendAll(), received = duties_.received && receiveAll();
+    const bool sent = sendPosted(Recipients::all), received = duties_.received && receiveAll();
     if (duties_.tick && Clock::now() - lastTick >= kTick) {
       lastTick = Clock::now();
       guarded([&] { duties_.tick(); });
@@ -140,29 +141,39 @@ void Mailbox::guarded(Step step) {
   }
 }
 
-// Begins to send what was posted and looks what has been sent. Returns whether anything was.
-bool Mailbox::sendAll() {
-  std::deque<Letter> posted;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    posted.swap(posted_);
-  }
+void Mailbox::sendNow() { sendPosted(Recipients::others); }
+
+// The first letter that was posted to one of the recipients.
+std::optional<Mailbox::Letter> Mailbox::takePosted(Recipients recipients) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto first = std::find_if(posted_.begin(), posted_.end(), [&](const Letter& letter) {
+    return recipients == Recipients::all || letter.other != rank_;
+  });
+  if (first == posted_.end()) return std::nullopt;
+  Letter letter = std::move(*first);
+  posted_.erase(first);
+  return letter;
+}
+
+// Begins to send what was posted and looks what has been sent. Returns whether anything was. Letters are taken one by
+// one: a duty on the way may call sendNow(), and those of one recipient stay in order.
+bool Mailbox::sendPosted(Recipients recipients) {
   bool any = false;
-  for (Letter& letter : posted) {
+  while (std::optional<Letter> letter = takePosted(recipients)) {
     any = true;
     guarded([&] {
-      if (letter.other == rank_) {
-        if (duties_.received) duties_.received(rank_, std::move(letter.bytes));
+      if (letter->other == rank_) {
+        if (duties_.received) duties_.received(rank_, std::move(letter->bytes));
         return;
       }
-      underWay_.push_back({letter.other, inBlocks(std::move(letter.bytes))});
+      underWay_.push_back({letter->other, inBlocks(std::move(letter->bytes))});
       Letter& last = underWay_.back();
       // What cannot be sent has nobody to receive it.
       const int to = static_cast<int>(last.other);
       if (mpi_.send(to, last.bytes.data(), last.bytes.size() / kMpiBlock, &last.request) < 0) underWay_.pop_back();
     });
   }
-  any |= std::erase_if(underWay_, [&](Letter& letter) { return mpi_.over(&letter.request) != 0; }) != 0;
+  any |= std::erase_if(underWay_, [&](Letter& one) { return mpi_.over(&one.request) != 0; }) != 0;
   return any;
 }
 

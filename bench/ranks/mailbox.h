@@ -12,6 +12,7 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -45,6 +46,8 @@ class Mailbox {
   void open(Duties duties);
   // Hands a message over, from any thread.
   void post(uint32_t to, Bytes message);
+  // Within a duty that takes long: begins to send what was posted to others, which waits for the duty's end otherwise.
+  void sendNow();
   // Sends what was posted, and waits for all processes to do so.
   void finish();
   // Ends the thread without a word to MPI, which launchers take for a failure. What was posted is sent first, if that
@@ -61,7 +64,9 @@ class Mailbox {
 
   void run();
   void work();
-  bool sendAll();
+  enum class Recipients { all, others };  // others: not this process
+  std::optional<Letter> takePosted(Recipients recipients);
+  bool sendPosted(Recipients recipients);
   bool receiveAll();
   bool deliverAll();
   void leaveToMpi();

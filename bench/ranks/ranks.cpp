@@ -280,7 +280,11 @@ void Ranks::complete(SumLabel label, std::vector<Mailbox::Bytes> messages) {
   std::vector<FilmSum::Bytes> contributions;
   contributions.reserve(messages.size());
   for (const Mailbox::Bytes& message : messages) contributions.push_back(FilmSum::Bytes(message).subspan(kHead));
-  sum_.sumUp(contributions);
+  // Large films take long to add, and nobody is to think that this process is lost.
+  sum_.sumUp(contributions, [this] {
+    sendNews();
+    mailbox_->sendNow();
+  });
   if (!first()) {
     sendWithHead(tree_->parent(), Kind::contribution, label, sum_.contribution(kHead));
     addingSeconds_ += secondsBetween(begin, Clock::now());
@@ -304,8 +308,20 @@ void Ranks::complete(SumLabel label, std::vector<Mailbox::Bytes> messages) {
   changed_.notify_all();
 }
 
+// A heartbeat, where one is due: of the first process to all others, and theirs to it, with the paths so far.
+void Ranks::sendNews() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  if (secondsBetween(lastNews_, now) < kNews) return;
+  lastNews_ = now;
+  if (first()) return sendToOthers(Kind::alive, 0);
+  if (hooks_.paths) paths_[rank()] = hooks_.paths();
+  send(0, Kind::paths, paths_[rank()]);
+}
+
 // Sends heartbeats, passes on signals that this process got, and finds processes that have been silent for too long.
 void Ranks::tick() {
+  sendNews();
   const Clock::time_point now = Clock::now();
   const double passed = std::min(secondsBetween(lastTick_, now), kLongestLook);
   lastTick_ = now;
@@ -315,15 +331,6 @@ void Ranks::tick() {
     sendToOthers(Kind::stop, 0);
   }
   if (hooks_.saveWanted && hooks_.saveWanted()) send(0, Kind::wantSave, 0);
-  if (secondsBetween(lastNews_, now) >= kNews) {
-    lastNews_ = now;
-    if (first()) {
-      sendToOthers(Kind::alive, 0);
-    } else {
-      if (hooks_.paths) paths_[rank()] = hooks_.paths();
-      send(0, Kind::paths, paths_[rank()]);
-    }
-  }
   const double limit = stopping_ ? kLostAfterStop : kLostAfter;
   for (uint32_t other = 0; other < (first() ? count() : 1) && !lost_; ++other) {
     if (other == rank() || (silence_[other] += passed) < limit) continue;

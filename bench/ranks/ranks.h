@@ -83,6 +83,7 @@ class Ranks {
 
   void received(uint32_t from, Mailbox::Bytes message);
   void tick();
+  void sendNews();
   void failed(const std::exception& error);
   void send(uint32_t to, Kind kind, uint64_t number, std::span<const unsigned char> content = {});
   // message: begins with room for the head.

@@ -60,6 +60,12 @@ class Against(CommandTest):
         self.assertIn(f"{other} runs only where it stands", told.stdout)
         self.assertEqual(read_json(self.path("out.json"))["in_place"], [str(other)])
 
+    def test_children_get_no_defaults_of_options_but_that_they_are_on_their_own(self):
+        first = "import os\nassert [os.environ.get('WAVECREST_' + x) for x in ('MPI', 'SAMPLER')] == ['off', None]"
+        other = self.other_build(1, first=first)
+        self.run_wavecrest("bench", *self.ARGUMENTS, "--against", other, "--family-level", "1e-6", expect=DONE,
+                           variables={"WAVECREST_MPI": "off", "WAVECREST_SAMPLER": "independent"})
+
     def test_what_cannot_be_run_is_a_usage_error(self):
         result = self.run_wavecrest("bench", "--against", self.path("nothing"), expect=USAGE)
         self.assert_one_error_line(result, "--against .*expected the path of a wavecrest")

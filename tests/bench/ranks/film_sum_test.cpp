@@ -46,7 +46,9 @@ TEST(FilmSumTest, contributionsOfProcessesAreOneRender) {
     FilmSum inner, outer;
     inner.sumUp({contributions[2], contributions[1]});
     outer.sumUp({contributions[1], contributions[1]});
-    outer.sumUp({contributions[0], inner.contribution()});
+    int added = 0;
+    outer.sumUp({contributions[0], inner.contribution()}, [&] { ++added; });
+    EXPECT_EQ(added, 2);
     EXPECT_LE(worstDistance(outer.film().resolve(), whole->film().resolve()), 1) << entry.name;
     const RenderStatistics sum = outer.statistics(own), expected = whole->statistics();
     EXPECT_EQ(sum.iterations, expected.iterations) << entry.name;

@@ -84,6 +84,35 @@ TEST(Mailbox, goesOnWhereADutyThrows) {
   EXPECT_EQ(failed.load(), 1);
 }
 
+std::atomic<int> sent{0};
+
+int countSent(int /*to*/, const void* /*bytes*/, uint64_t /*blocks*/, void** /*request*/) {
+  ++sent;
+  return 0;
+}
+
+// As a heartbeat has to, while films are added.
+TEST(Mailbox, sendsToOthersWithinADuty) {
+  MpiFunctions mpi = kAlone;
+  mpi.send = countSent;
+  int received = 0, sentWithin = 0, receivedWithin = 0;
+  Mailbox mailbox(mpi);
+  const auto receive = [&](uint32_t, const Mailbox::Bytes&) {
+    if (++received > 1) return;
+    mailbox.post(0, {2});
+    mailbox.post(1, {3});
+    mailbox.sendNow();
+    sentWithin = sent;
+    receivedWithin = received;
+  };
+  mailbox.open({.received = receive, .tick = [] {}, .failed = [](const std::exception&) {}});
+  mailbox.post(0, {1});
+  mailbox.finish();
+  EXPECT_EQ(sentWithin, 1);
+  EXPECT_EQ(receivedWithin, 1) << "a duty was called within another";
+  EXPECT_EQ(received, 2);
+}
+
 TEST(Mailbox, goesOnWhileALargeMessageArrives) {
   MpiFunctions mpi = kAlone;
   mpi.arrived = threeArrived;
