@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "bench/score_text.h"
 #include "cli/commands.h"
 #include "metrics/image/image_io.h"
 
@@ -25,12 +26,22 @@ std::unique_ptr<PreparedReference> readReference(const std::string& name, const 
   return std::make_unique<PreparedReference>(name, std::move(file));
 }
 
-// The error and its confidence interval as text. reached: as renderUntilError returns it.
+// The error and its confidence interval as text. All of the interval has to be at the goal or below. reached: as
+// renderUntilError returns it.
 std::string describeError(const nlohmann::ordered_json& reached) {
   if (reached["relative_error"].is_null()) return "relative error not known yet";
-  return fmt::format("relative error {:.3g}, {:.3g} to {:.3g} with {:.0f} % confidence",
+  const auto goal = reached["relative_error_goal"].get<double>();
+  return fmt::format("relative error {:.3g}, {:.3g} to {} with {:.0f} % confidence",
                      reached["relative_error"].get<double>(), reached["interval"][0].get<double>(),
-                     reached["interval"][1].get<double>(), 100 * reached["interval_level"].get<double>());
+                     scoreBesideTarget(reached["interval"][1].get<double>(), goal, false, 3),
+                     100 * reached["interval_level"].get<double>());
+}
+
+// The SSIM as text. reached: as UntilGoal::render returns it.
+std::string describeSsim(const nlohmann::ordered_json& reached) {
+  if (reached["ssim"].is_null()) return "SSIM not known yet";
+  const auto goal = reached["ssim_goal"].get<double>();
+  return "SSIM " + scoreBesideTarget(reached["ssim"].get<double>(), goal, true, 4, Digits::decimals);
 }
 
 }  // namespace
@@ -97,13 +108,9 @@ nlohmann::ordered_json UntilGoal::renderUntilError(Session& session, const Rende
 }
 
 std::string UntilGoal::describe(const nlohmann::ordered_json& reached) {
-  const auto ssim = [&] {
-    return reached["ssim"].is_null() ? "SSIM not known yet" : fmt::format("SSIM {:.4f}", reached["ssim"].get<double>());
-  };
   const bool ofSsim = reached.contains("ssim");
-  return fmt::format("{} after {} iterations: {}, goal {:.4g}",
-                     reached["reached"].get<bool>() ? "reached" : "not reached", reached["iterations"].get<uint64_t>(),
-                     ofSsim ? ssim() : describeError(reached),
+  return fmt::format("{} after {} iterations: {}, goal {}", reached["reached"].get<bool>() ? "reached" : "not reached",
+                     reached["iterations"].get<uint64_t>(), ofSsim ? describeSsim(reached) : describeError(reached),
                      reached[ofSsim ? "ssim_goal" : "relative_error_goal"].get<double>());
 }
 

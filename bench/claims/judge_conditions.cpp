@@ -10,6 +10,7 @@
 #include "bench/claims/comparison.h"
 #include "bench/claims/loss_comparisons.h"
 #include "bench/claims/reached_later.h"
+#include "bench/score_text.h"
 
 namespace wavecrest {
 namespace {
@@ -78,6 +79,13 @@ class Judge {
   }
   bool measured(const std::string& method) const { return scene_.missing(method).empty(); }
 
+  // A score in print. Where it is below a limit, which is the least that `reaches` asks for, it never reads as that.
+  std::string scoreText(double score, int digits) const {
+    const bool limited = condition_.kind == ConditionKind::reaches || condition_.kind == ConditionKind::misses;
+    if (!limited) return fmt::format("{:.{}g}", score, digits);
+    return scoreBesideTarget(score, condition_.score, true, digits);
+  }
+
   // Adds the scores of all methods, with their bands, and the noise floor to the evidence.
   void showValues(const std::string& metric) {
     std::vector<std::string> methods = condition_.methods;
@@ -89,11 +97,11 @@ class Judge {
       const std::vector<double> values = scene_.scores(method, metric);
       if (values.empty()) continue;
       const Band band = meanBand(values);
-      line += fmt::format("{}{} {:.4g}", line.empty() ? "" : ", ", shown(method), band.mean);
+      line += fmt::format("{}{} {}", line.empty() ? "" : ", ", shown(method), scoreText(band.mean, 4));
       line += plusMinus(band.halfWidth);
     }
     if (const std::optional<double> floor = scene_.floorLoss(metric)) {
-      line += fmt::format(" (noise floor {:.4g})", scoreOfLoss(metric, *floor));
+      line += fmt::format(" (noise floor {})", scoreText(scoreOfLoss(metric, *floor), 4));
     } else if (scene_.isUnbiased(metric)) {
       line += " (without the reference's noise)";
     }
@@ -202,7 +210,7 @@ class Judge {
         continue;
       }
       const Band band = scene_.scoreBand(method, metric);
-      const std::string value = fmt::format("{} of {} is {:.3g}", nameOf(metric), shown(method), band.mean),
+      const std::string value = fmt::format("{} of {} is {}", nameOf(metric), shown(method), scoreText(band.mean, 3)),
                         text = fmt::format("{}, limit {:g}", value, condition_.score);
       Comparison result = reaches ? above(band, condition_.score, text) : below(band, condition_.score, text);
       if (reaches && result.verdict == V::fails) {
@@ -212,8 +220,9 @@ class Judge {
       // Where an image without error would miss the score as well, missing it says nothing of the method.
       const std::optional<double> floor = scene_.floorLoss(metric);
       if (floor && *floor > lossOf(metric, condition_.score) && result.verdict != (reaches ? V::holds : V::fails)) {
-        result = {V::notJudged, 0,
-                  fmt::format("{}; the reference's noise alone gives {:.3g}", value, scoreOfLoss(metric, *floor))};
+        result = {
+            V::notJudged, 0,
+            fmt::format("{}; the reference's noise alone gives {}", value, scoreText(scoreOfLoss(metric, *floor), 3))};
       }
       add(result);
     }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "bench/claims/seed_spread_json.h"
+#include "bench/statistics/line_fit.h"
 
 namespace wavecrest {
 namespace {
@@ -14,24 +15,10 @@ namespace {
 constexpr double kSmallestLoss = 1e-9;  // of images that equal the reference
 constexpr double kSlopeSpan = 4;        // a slope is measured over so many times the time
 
-// A logarithm of time and one of a loss or error.
-struct LogPoint {
-  double time, loss;
-};
-
-// The slope of the line through the points by least squares. It takes two different times.
-std::optional<double> slopeThrough(const std::vector<LogPoint>& points) {
-  double n = 0, sumX = 0, sumY = 0, sumXX = 0, sumXY = 0;
-  for (const auto& [x, y] : points) {
-    n += 1;
-    sumX += x;
-    sumY += y;
-    sumXX += x * x;
-    sumXY += x * y;
-  }
-  const double spread = n * sumXX - sumX * sumX;
-  if (n < 2 || !(spread > 0)) return std::nullopt;
-  return (n * sumXY - sumX * sumY) / spread;
+// The slope of the line through logarithms of time and of a loss or error. It takes two different times.
+std::optional<double> slopeThrough(const std::vector<LinePoint>& points) {
+  const std::optional<LineFit> line = lineThrough(points);
+  return line ? std::optional(line->slope) : std::nullopt;
 }
 
 // A value of a snapshot; nothing if it was not measured or is not finite.
@@ -212,7 +199,7 @@ std::vector<double> SceneLosses::lossSlopes(const std::string& method, const std
   constexpr size_t kLeastPoints = 3;
   std::vector<double> slopes;
   for (const RunRecord* run : runs(method)) {
-    std::vector<LogPoint> points;
+    std::vector<LinePoint> points;
     for (const SnapshotRecord& snapshot : run->snapshots) {
       const double away = snapshot.renderSeconds / seconds;
       const std::optional<double> score = scoreOf(snapshot, metric);
@@ -230,7 +217,7 @@ std::vector<double> SceneLosses::errorSlopes(const std::string& method) const {
   return perSeed(method, [](const RunRecord& run) -> std::optional<double> {
     // The factor 0.999 keeps a snapshot at exactly a quarter of the time. The error is the root of the mean square.
     const double from = run.snapshots.back().renderSeconds / kSlopeSpan * 0.999;
-    std::vector<LogPoint> points;
+    std::vector<LinePoint> points;
     for (const SnapshotRecord& snapshot : run.snapshots) {
       const std::optional<double> mse = valueOf(snapshot, kUnbiasedMse);
       if (!mse || *mse <= 0 || snapshot.renderSeconds < from) continue;

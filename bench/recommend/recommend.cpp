@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bench/recommend/duration_words.h"
+#include "bench/score_text.h"
 #include "bench/statistics/biased_reference.h"
 #include "bench/statistics/chains_mislead.h"
 #include "engine/inspect/path_classes.h"
@@ -92,8 +93,9 @@ void judgeRows(Recommendation& all) {
   if (first->method == Method::mlt) all.doubts.emplace_back(kChainsMislead);
   if (all.referenceSsim < all.targetSsim) {
     all.doubts.push_back(
-        fmt::format("the reference that all were compared with ({}) is itself known to an SSIM of {:.3f} only",
-                    toString(all.referenceMethod), all.referenceSsim));
+        fmt::format("the reference that all were compared with ({}) is itself known to an SSIM of {} only",
+                    toString(all.referenceMethod),
+                    scoreBesideTarget(all.referenceSsim, all.targetSsim, true, 3, Digits::decimals)));
   }
 }
 

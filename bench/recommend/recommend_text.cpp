@@ -6,6 +6,7 @@
 
 #include "bench/recommend/duration_words.h"
 #include "bench/recommend/recommend.h"
+#include "bench/score_text.h"
 #include "bench/text_lines.h"
 
 namespace wavecrest {
@@ -69,8 +70,9 @@ std::string toText(const Recommendation& all) {
     }
     const std::string interval =
         p.seconds ? fmt::format("{} to {}", durationWords(p.interval.low), durationWords(p.interval.high)) : "";
-    line(text, "{:<7} {:>11} {:>21} {:>9.4f} {:>7.4f} {:>9.2f}  {}", toString(row.method), timeWords(row), interval,
-         p.ssimNow, p.ssimLimit, row.pilotSeconds,
+    const auto ssim = [&](double value) { return scoreBesideTarget(value, all.targetSsim, true, 4, Digits::decimals); };
+    line(text, "{:<7} {:>11} {:>21} {:>9} {:>7} {:>9.2f}  {}", toString(row.method), timeWords(row), interval,
+         ssim(p.ssimNow), ssim(p.ssimLimit), row.pilotSeconds,
          p.seconds || row.leavesOut.empty() ? "" : "no paths " + row.leavesOut);
   }
   return fmt::to_string(text);

@@ -97,11 +97,11 @@ SceneAnswer answerFor(const ReportScene& scene, const ReportMetric& metric, size
   const Candidate& first = all.front();
   answer.methods = {first.series->label};
   answer.reached = first.time.has_value();
-  answer.figure = first.time ? formatTime(*first.time) : formatSignificant(first.value);
+  answer.figure = first.time ? formatTime(*first.time) : formatScore(metric, first.value);
   // Against a noisy reference not even an image without error reaches the target, or hardly.
   const std::optional<double> floor = noiseFloorOf(scene, metricIndex);
   if (!first.time && isNearFloor(metric, *metric.target, floor)) {
-    answer.figure += fmt::format("; the reference allows {}", formatSignificant(*floor));
+    answer.figure += fmt::format("; the reference allows {}", formatScore(metric, *floor));
   } else if (const auto ahead = timeAhead(*first.series, metric, metricIndex, *metric.target, floor)) {
     answer.figure += "; " + formatTimeAhead(*ahead);
   }

@@ -10,6 +10,7 @@
 
 #include "bench/claims/explanations.h"
 #include "bench/claims/judge_claims.h"
+#include "bench/image_attributes.h"
 #include "bench/report/final_images.h"
 #include "bench/report/html_text.h"
 #include "bench/report/method_style.h"
@@ -163,13 +164,10 @@ void addRefusals(ReportScene& scene, const CampaignResults& results) {
 
 // What a reference says of itself, as bench/campaign/reference_file.h writes it: ", two halves by bpt, off by 0.8 %".
 std::string originOf(const Metadata& metadata) {
-  const auto value = [&](const char* key) {
-    const auto found = metadata.find(std::string("wavecrest:") + key);
-    return found == metadata.end() ? std::string() : found->second;
-  };
   std::string text;
-  if (!value("method").empty()) text += fmt::format(", two halves by {}", value("method"));
-  const auto number = [&](const char* key) { return wholeNumber<double>(value(key)).value_or(0); };
+  const std::string method = attributeOf(metadata, "method");
+  if (!method.empty()) text += fmt::format(", two halves by {}", method);
+  const auto number = [&](const char* key) { return wholeNumber<double>(attributeOf(metadata, key)).value_or(0); };
   // A reference with a merge radius is biased. Files of earlier versions have the radius, but no word of the bias.
   if (number("radius") > 0) text += ", biased by its merge radius";
   const double error = number("relative_error");

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
+#include "bench/image_attributes.h"
 #include "bench/report/final_images.h"
 #include "bench/report/method_style.h"
 #include "bench/report/other_images.h"
@@ -33,15 +35,11 @@ struct SceneReference {
   std::string origin;
 };
 
-constexpr const char* kHashKey = "wavecrest:scene_hash";
-constexpr const char* kErrorKey = "wavecrest:relative_error";
-constexpr const char* kFloorPrefix = "wavecrest:noise_floor.";
+constexpr const char* kHashKey = "scene_hash";
+constexpr const char* kErrorKey = "relative_error";
 
-// A value of the metadata; empty if the image does not have it.
-std::string attribute(const ImageFile& image, const std::string& key) {
-  const auto entry = image.metadata.find(key);
-  return entry == image.metadata.end() ? "" : entry->second;
-}
+// A value that the image says of itself; empty if it does not.
+std::string attribute(const ImageFile& image, std::string_view key) { return attributeOf(image.metadata, key); }
 
 // Throws if a file is of another scene than the runs. An empty hash is unknown and agrees with any.
 void requireHash(const fs::path& file, const std::string& found, const std::string& ofRuns) {
@@ -71,8 +69,8 @@ void requireReference(const fs::path& file, const ImageFile& image) {
 
 // Throws if both halves name the same seed: then their errors are not independent.
 void requireIndependent(const fs::path& second, const ImageFile& a, const ImageFile& b) {
-  const std::string seed = attribute(a, "wavecrest:seed");
-  if (seed.empty() || seed != attribute(b, "wavecrest:seed")) return;
+  const std::string seed = attribute(a, "seed");
+  if (seed.empty() || seed != attribute(b, "seed")) return;
   throw ResultsError(
       fmt::format("{}: has the seed {} of the other half; expected another seed", second.string(), seed));
 }
@@ -81,7 +79,7 @@ void requireIndependent(const fs::path& second, const ImageFile& a, const ImageF
 void readFloors(const fs::path& file, const ImageFile& image, std::vector<std::optional<double>>& floors) {
   const std::vector<const Metric*> metrics = reportedMetrics();
   for (size_t m = 0; m < metrics.size(); ++m) {
-    const std::string text = attribute(image, kFloorPrefix + scoreName(*metrics[m], metrics[m]->score));
+    const std::string text = attribute(image, std::string(kNoiseFloorKey) + scoreName(*metrics[m], metrics[m]->score));
     if (text.empty()) continue;
     const std::optional<double> value = wholeNumber<double>(text);
     if (!value) throw ResultsError(fmt::format("{}: noise floor '{}'; expected a number", file.string(), text));

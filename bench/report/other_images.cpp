@@ -7,8 +7,13 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <optional>
+#include <tuple>
 
+#include "bench/image_attributes.h"
+#include "bench/report/run_series.h"
+#include "bench/results/whole_number.h"
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {
@@ -53,23 +58,28 @@ std::optional<TimedName> timedName(const std::string& stem) {
 struct OtherImage {
   std::string scene, method, sceneHash;
   uint64_t seed = 0;
+  nlohmann::json settings = nlohmann::json::object();  // seriesSettings()
   SnapshotFile snapshot;
 };
 
-// Images of one scene, method and seed are one run, in order of time.
+// Whether an image is of the render that a run is.
+bool isOfRun(const RunFile& run, const OtherImage& image) {
+  return run.scene == image.scene && run.sceneHash == image.sceneHash && run.method == image.method &&
+         run.seed == image.seed && run.stats == image.settings;
+}
+
+// Images of one scene, method, seed and settings are one run, in order of time.
 std::vector<RunFile> runsOf(const std::vector<OtherImage>& images) {
   std::vector<RunFile> runs;
   for (const OtherImage& image : images) {
-    auto run = std::find_if(runs.begin(), runs.end(), [&](const RunFile& known) {
-      return known.scene == image.scene && known.method == image.method && known.seed == image.seed;
-    });
+    auto run = std::find_if(runs.begin(), runs.end(), [&](const RunFile& known) { return isOfRun(known, image); });
     if (run == runs.end()) {
       run = runs.insert(runs.end(), RunFile{.path = image.snapshot.image,
                                             .scene = image.scene,
                                             .method = image.method,
                                             .sceneHash = image.sceneHash,
                                             .seed = image.seed,
-                                            .stats = nlohmann::json::object(),
+                                            .stats = image.settings,
                                             .snapshots = {},
                                             .other = true});
     }
@@ -140,6 +150,7 @@ std::string methodOfName(const std::string& stem) {
   return method.empty() ? stem : method;
 }
 
+// One line of a list. Where it does not name the method, that stays empty.
 OtherImage readRow(const fs::path& list, size_t line, const std::vector<Column>& columns,
                    const std::vector<std::string>& fields, const std::string& scene) {
   if (fields.size() != columns.size()) {
@@ -176,8 +187,40 @@ OtherImage readRow(const fs::path& list, size_t line, const std::vector<Column>&
         break;
     }
   }
-  if (image.method.empty()) image.method = methodOfName(image.snapshot.image.stem().string());
   return image;
+}
+
+// Names the methods of images without one after their files. Images of one name, scene and seed in several folders are
+// of several renders: their folders then stand before the name.
+void nameMethods(std::vector<OtherImage>& images, const fs::path& folderOfList) {
+  struct Named {
+    OtherImage* image;
+    std::string folder;
+  };
+  std::map<std::tuple<std::string, std::string, uint64_t>, std::vector<Named>> renders;
+  for (OtherImage& image : images) {
+    if (!image.method.empty()) continue;
+    const fs::path& file = image.snapshot.image;
+    image.method = methodOfName(file.stem().string());
+    const fs::path relative = file.lexically_relative(folderOfList);  // empty of an absolute name
+    const std::string folder = (relative.empty() ? file : relative).parent_path().generic_string();
+    renders[{image.scene, image.method, image.seed}].push_back({&image, folder});
+  }
+  for (const auto& [name, found] : renders) {
+    const bool several =
+        std::ranges::any_of(found, [&](const Named& one) { return one.folder != found.front().folder; });
+    for (const Named& one : found) {
+      if (several && !one.folder.empty()) one.image->method = one.folder + "/" + one.image->method;
+    }
+  }
+}
+
+// Adds what images that wavecrest rendered say of their settings.
+void addSettings(std::vector<OtherImage>& images) {
+  for (OtherImage& image : images) {
+    const std::string file = image.snapshot.image.string();
+    if (extensionOf(file) == ".exr") image.settings = seriesSettings(readImage(file).metadata);
+  }
 }
 
 // ---- names ----------------------------------------------------------------------------------------------------------
@@ -190,10 +233,7 @@ bool isLightImage(const fs::path& file) {
 // What an image that wavecrest rendered says of itself. Nothing if it is of another program.
 std::optional<OtherImage> describedImage(const fs::path& file, const std::string& scene) {
   const Metadata metadata = readImage(file.string()).metadata;
-  const auto value = [&](const char* key) {
-    const auto entry = metadata.find(std::string("wavecrest:") + key);
-    return entry == metadata.end() ? std::string() : entry->second;
-  };
+  const auto value = [&](const char* key) { return attributeOf(metadata, key); };
   const std::optional<double> seconds = wholeNumber<double>(value("render_seconds"));
   if (value("method").empty() || !seconds) return std::nullopt;
   const std::string own = fs::path(value("scene")).stem().string();
@@ -202,6 +242,7 @@ std::optional<OtherImage> describedImage(const fs::path& file, const std::string
       .method = value("method"),
       .sceneHash = value("scene_hash"),
       .seed = wholeNumber<uint64_t>(value("seed")).value_or(0),
+      .settings = seriesSettings(metadata),
       .snapshot = {
           .seconds = *seconds, .iterations = wholeNumber<uint64_t>(value("iterations")).value_or(0), .image = file}};
 }
@@ -237,6 +278,8 @@ std::vector<RunFile> readListedRuns(const fs::path& list, const std::string& sce
   }
   if (images.empty())
     throw ResultsError(list.string() + ": names no image; expected an image and seconds on each line");
+  nameMethods(images, list.parent_path());
+  addSettings(images);
   return runsOf(images);
 }
 

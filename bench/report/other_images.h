@@ -3,7 +3,9 @@
 // A name's SECONDS is a number with or without `s` or `ms`; METHOD is what stands before it. The list is a CSV file, by
 // default images.csv in the folder: an image and its render time in seconds on each line. With a line of names first,
 // columns may stand in any order and be more: image, seconds, method, seed, iterations, scene. A method that no column
-// names is the image's name without its number.
+// names is the image's name without its number, after its folder where images of one name lie in several.
+//
+// Images that wavecrest rendered say by which settings: those of different settings are different runs.
 #pragma once
 
 #include <filesystem>

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "bench/image_attributes.h"
 #include "bench/report/html_text.h"
 
 namespace wavecrest {
@@ -31,11 +32,16 @@ constexpr const char* kSeriesSettings[] = {"sampler",
                                            "merge_vertices",
                                            "connection_roulette"};
 
-// What a run's stats say of a setting; null where they do not.
-nlohmann::json settingOf(const RunFile& run, const std::string& name) {
+// Where stats have a setting.
+nlohmann::json::json_pointer placeOf(const std::string& name) {
   std::string path = "/" + name;
   std::ranges::replace(path, '.', '/');
-  const nlohmann::json::json_pointer place(path);
+  return nlohmann::json::json_pointer(path);
+}
+
+// What a run's stats say of a setting; null where they do not.
+nlohmann::json settingOf(const RunFile& run, const std::string& name) {
+  const nlohmann::json::json_pointer place = placeOf(name);
   if (!run.stats.contains(place)) return {};
   nlohmann::json value = run.stats.at(place);
   // Without a limit earlier versions said 4095 of every method, where today's say 64 of mlt, and 2^24 of pt and gpt.
@@ -105,6 +111,18 @@ void numberByTime(const std::vector<RunFile*>& runs) {
 }
 
 }  // namespace
+
+nlohmann::json seriesSettings(const Metadata& metadata) {
+  nlohmann::json stats = nlohmann::json::object();
+  for (const char* name : kSeriesSettings) {
+    const std::string* const text = findAttribute(metadata, name);
+    if (text == nullptr) continue;
+    // Words stand without quotes.
+    const nlohmann::json value = nlohmann::json::parse(*text, nullptr, false);
+    stats[placeOf(name)] = value.is_discarded() ? nlohmann::json(*text) : value;
+  }
+  return stats;
+}
 
 std::vector<std::vector<RunFile*>> groupBySettings(const std::vector<RunFile*>& runs) {
   std::vector<std::vector<RunFile*>> groups;

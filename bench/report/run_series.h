@@ -6,8 +6,13 @@
 #include <vector>
 
 #include "bench/report/results_folder.h"
+#include "metrics/image/image_io.h"
 
 namespace wavecrest {
+
+/// What tells series of a method apart, as stats have it, from the attributes of an image that says it of itself; empty
+/// of other programs' images.
+nlohmann::json seriesSettings(const Metadata& metadata);
 
 /// Groups runs by method and settings, in order of first appearance. Throws ResultsError if a group has a seed twice:
 /// its runs would count as independent.

@@ -80,7 +80,7 @@ ScenePlot metricPlot(const ReportScene& scene, const ReportMetric& metric, size_
            .y = point.mean,
            .low = point.low,
            .high = point.high,
-           .tooltip = fmt::format("{}: {} {} after {}{}", series.label, metric.name, formatSignificant(point.mean),
+           .tooltip = fmt::format("{}: {} {} after {}{}", series.label, metric.name, formatScore(metric, point.mean),
                                   formatSeconds(point.seconds), iterationsText(point.iterations))});
     }
     plot.curves.push_back(std::move(curve));

@@ -33,7 +33,10 @@ std::string methodCell(const ReportSeries& series) {
 std::string countCell(double count) { return count > 0 ? formatCount(count) : "–"; }
 
 // A dash where there is no number.
-std::string scoreText(double value) { return std::isnan(value) ? "–" : formatSignificant(value); }
+std::string numberText(double value) { return std::isnan(value) ? "–" : formatSignificant(value); }
+std::string scoreText(const ReportMetric& metric, double value) {
+  return std::isnan(value) ? "–" : formatScore(metric, value);
+}
 
 // "12 s", or for a method that does not end with the target a dash and how much longer it would take.
 std::string targetCell(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
@@ -85,9 +88,9 @@ std::string renderScores(const ConvergenceReport& report, const ReportScene& sce
     html += "<tr>" + methodCell(*series);
     for (size_t m = 0; m < report.metrics.size(); ++m) {
       const bool best = isClearlyBest(scene, *series, report.metrics[m], m);
-      append(html, "<td class=\"n{}\">{}", best ? " best" : "", scoreText(finalValue(*series, m)));
+      append(html, "<td class=\"n{}\">{}", best ? " best" : "", scoreText(report.metrics[m], finalValue(*series, m)));
       if (trimmed && report.metrics[m].key == kTrimmedMetric) {
-        append(html, "<td class=\"n\">{}", scoreText(finalFurther(*series, kTrimmedScore)));
+        append(html, "<td class=\"n\">{}", numberText(finalFurther(*series, kTrimmedScore)));
       }
     }
   }
@@ -169,8 +172,8 @@ std::string renderBias(const ReportScene& scene) {
     const ReportBias& last = series.bias.back();
     const std::optional<double> share = shareOfBias(last);
     append(rows, "<tr>{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}",
-           methodCell(series), last.seeds, scoreText(last.meanSquareError), scoreText(last.variance),
-           scoreText(last.bias2), share ? fmt::format("{:.1f} %", 100 * *share) : "–");
+           methodCell(series), last.seeds, numberText(last.meanSquareError), numberText(last.variance),
+           numberText(last.bias2), share ? fmt::format("{:.1f} %", 100 * *share) : "–");
   }
   if (rows.empty()) return "";
   return "<h3>Bias and variance at the end</h3><p class=\"facts\">Mean square error over several seeds, without the "

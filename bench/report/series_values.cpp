@@ -7,6 +7,7 @@
 
 #include "bench/report/html_text.h"
 #include "bench/report/method_style.h"
+#include "bench/score_text.h"
 #include "bench/statistics/bands.h"
 
 namespace wavecrest {
@@ -79,6 +80,11 @@ bool isBetter(const ReportMetric& metric, double a, double b) {
   // Any number is better than NaN. NaN is not better than NaN.
   if (std::isnan(a) || std::isnan(b)) return std::isnan(b) && !std::isnan(a);
   return metric.higherIsBetter ? a > b : a < b;
+}
+
+std::string formatScore(const ReportMetric& metric, double score) {
+  if (!metric.target) return formatSignificant(score);
+  return scoreBesideTarget(score, *metric.target, metric.higherIsBetter, 3);
 }
 
 std::optional<double> noiseFloorOf(const ReportScene& scene, size_t metric) {

@@ -39,6 +39,9 @@ double finalSeconds(const ReportSeries& series);
 /// Whether a is the better score. A number is better than no number.
 bool isBetter(const ReportMetric& metric, double a, double b);
 
+/// A score in print: three digits, or as many as it takes where it misses the metric's target.
+std::string formatScore(const ReportMetric& metric, double score);
+
 /// What an image without error scores against the scene's reference, where that is known.
 std::optional<double> noiseFloorOf(const ReportScene& scene, size_t metric);
 

@@ -27,9 +27,6 @@ struct HeatMap {
   bool higherIsBetter = false;
 };
 
-// The text of a cell in metric maps.
-std::string significant(const ReportSeries&, double value) { return formatSignificant(value); }
-
 // Scores at the ends of the runs. The tint of a logarithmic metric grows with the factor between score and best, up to
 // a factor of 16. The tint of any other metric grows with the difference, up to half of the best.
 HeatMap metricMap(const ReportMetric& metric, size_t index) {
@@ -43,7 +40,7 @@ HeatMap metricMap(const ReportMetric& metric, size_t index) {
             if (logarithmic) return std::abs(std::log2(value / best)) / 4;
             return std::abs(value - best) / std::max(std::abs(best), 1e-12) * 2;
           },
-      .text = significant,
+      .text = [&metric](const ReportSeries&, double value) { return formatScore(metric, value); },
       .isBest = [&metric, index](const ReportScene& scene,
                                  const ReportSeries& series) { return isClearlyBest(scene, series, metric, index); },
       .higherIsBetter = metric.higherIsBetter};

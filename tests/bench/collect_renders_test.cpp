@@ -1,6 +1,7 @@
 // A folder of renders written here, with images whose errors are known in advance, read back as a report.
 #include "bench/report/collect_renders.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -363,6 +364,67 @@ TEST_F(CollectRenders, listedSeedsMeetAtEqualTimes) {
   };
   EXPECT_EQ(numbers(series.runs[0]), (std::vector<unsigned>{0, 1, 2}));
   EXPECT_EQ(numbers(series.runs[1]), (std::vector<unsigned>{0, 2}));
+}
+
+// As `render` without --stats leaves them: the attributes are all that tells two settings apart.
+TEST_F(CollectRenders, imagesOfOtherSettingsAreNotOneRun) {
+  const auto add = [&](const std::string& name, const char* seconds, Metadata says) {
+    says.merge(Metadata{{"wavecrest:method", "gpt"},
+                        {"wavecrest:scene", "box"},
+                        {"wavecrest:scene_hash", "00ff"},
+                        {"wavecrest:seed", "1"},
+                        {"wavecrest:render_seconds", seconds}});
+    writeExr((folder / name).string(), speckled(0.1F), says);
+  };
+  add("a.0001.exr", "1", {{"wavecrest:sampler", "sobol"}, {"wavecrest:guide.target", "off"}});
+  add("a.exr", "2", {{"wavecrest:sampler", "sobol"}, {"wavecrest:guide.target", "off"}});
+  add("b.exr", "2.5", {{"wavecrest:sampler", "independent"}, {"wavecrest:guide.target", "off"}});
+  add("c.exr", "3", {{"wavecrest:sampler", "sobol"}, {"wavecrest:guide.target", "radiance"}});
+  const auto labels = [](const ReportScene& scene) {
+    std::vector<std::string> found;
+    for (const ReportSeries& series : scene.series) {
+      found.push_back(series.label + fmt::format(" {}", series.runs.at(0).points.size()));
+    }
+    return found;
+  };
+  EXPECT_EQ(labels(collectRenders(folder).scenes.at(0)),
+            (std::vector<std::string>{"gpt sobol off 2", "gpt independent off 1", "gpt sobol radiance 1"}));
+  // In a list that calls them alike, too.
+  std::ofstream(folder / "list.csv") << "image,seconds,method\na.exr,2,x\nb.exr,2.5,x\n";
+  EXPECT_EQ(labels(collectRenders(folder / "list.csv").scenes.at(0)),
+            (std::vector<std::string>{"x sobol 1", "x independent 1"}));
+}
+
+TEST_F(CollectRenders, imagesOfOtherScenesAreNotOneRun) {
+  for (const char* hash : {"00ff", "1234"}) {
+    writeExr((folder / fmt::format("{}.exr", hash)).string(), speckled(0.1F),
+             {{"wavecrest:method", "pt"},
+              {"wavecrest:scene", "box"},
+              {"wavecrest:scene_hash", hash},
+              {"wavecrest:seed", "1"},
+              {"wavecrest:render_seconds", "1"}});
+  }
+  EXPECT_NE(error().find("1234.exr: is of scene_hash 1234; expected 00ff"), std::string::npos) << error();
+}
+
+TEST_F(CollectRenders, listedImagesOfOneNameInSeveralFoldersAreSeveralSeries) {
+  for (const char* name : {"one/path_1.exr", "one/path_2.exr", "two/path_1.exr", "light_1.exr"}) {
+    fs::create_directories((folder / name).parent_path());
+    writeExr((folder / name).string(), speckled(0.1F));
+  }
+  const auto labels = [&](const std::string& list) {
+    std::ofstream(folder / "images.csv") << list;
+    std::vector<std::string> found;
+    for (const ReportSeries& series : collectRenders(folder).scenes.at(0).series) found.push_back(series.label);
+    return found;
+  };
+  EXPECT_EQ(labels("one/path_1.exr,1\none/path_2.exr,2\ntwo/path_1.exr,1.3\nlight_1.exr,1\n"),
+            (std::vector<std::string>{"one/path", "two/path", "light"}));
+  EXPECT_EQ(labels("one/path_1.exr,1\none/path_2.exr,2\nlight_1.exr,1\n"), (std::vector<std::string>{"path", "light"}));
+  EXPECT_EQ(labels("image,seconds,method\none/path_1.exr,1,a\ntwo/path_1.exr,2,a\n"), std::vector<std::string>{"a"})
+      << "the list says so";
+  EXPECT_EQ(labels("image,seconds,seed\none/path_1.exr,1,1\ntwo/path_1.exr,1,2\n"), std::vector<std::string>{"path"})
+      << "by the seed they are two renders of one series";
 }
 
 TEST_F(CollectRenders, seedsOfOtherLengthsDoNotMeet) {

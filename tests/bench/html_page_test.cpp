@@ -226,6 +226,11 @@ TEST(Answer, namesTheMethodsThatAreFirstToTheTarget) {
                "closest"));
   scene.noiseFloors[2] = 0.88;
   EXPECT_EQ(answerFor(scene, report.metrics[2], 2).figure, "0.85; the reference allows 0.88");
+  set(2, 0.8996);
+  EXPECT_EQ(answerFor(scene, report.metrics[2], 2).figure, "0.8996; the reference allows 0.88") << "and not 0.9";
+  scene.noiseFloors[2] = 0.89996;
+  EXPECT_EQ(answerFor(scene, report.metrics[2], 2).figure, "0.8996; the reference allows 0.89996");
+  EXPECT_TRUE(contains(renderReport(report), ">0.8996<")) << "in the tables, too";
   EXPECT_LT(renderReport(report).find("class=\"answer\""), renderReport(report).find("<h2>Summary</h2>"));
 }
 

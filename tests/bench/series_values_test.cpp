@@ -33,6 +33,19 @@ ReportMetric rising() {
   return metric;
 }
 
+TEST(FormatScore, neverReadsAsATargetThatIsMissed) {
+  ReportMetric metric = rising();
+  EXPECT_EQ(formatScore(metric, 0.9496), "0.95");
+  metric.target = 0.95;
+  EXPECT_EQ(formatScore(metric, 0.9496), "0.9496");
+  EXPECT_EQ(formatScore(metric, 0.9494), "0.949");
+  EXPECT_EQ(formatScore(metric, 0.9504), "0.95") << "which is reached";
+  EXPECT_EQ(formatScore(metric, 0.95), "0.95");
+  metric.higherIsBetter = false;
+  EXPECT_EQ(formatScore(metric, 0.9504), "0.9504");
+  EXPECT_EQ(formatScore(metric, 0.9496), "0.95");
+}
+
 TEST(MeanCurve, isMeanAndExtremesOverTheRunsThatGotThere) {
   const auto curve = meanCurve(seriesOf({{{1, 4}, {2, 2}, {4, 1}}, {{1.2, 6}, {2.4, 3}}}), 0);
   ASSERT_EQ(curve.size(), 3U);

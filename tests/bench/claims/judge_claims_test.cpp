@@ -194,7 +194,7 @@ TEST(JudgeClaims, stalls) {
   EXPECT_EQ(MadeUp().slope("pt", {0, -0.5}).slope("vcm", {-0.5, -0.51}).verdict(stalls), kUndecided);
   EXPECT_EQ(MadeUp().slope("pt", {0}).slope("vcm", {-0.45}).verdict(stalls), kHolds) << "of one seed too";
   EXPECT_EQ(MadeUp().slope("pt", {0}).slope("vcm", {-0.3}).verdict(stalls), kUndecided) << "the control is open";
-  const ClaimRecord both = made(-0.02, -0.02).judge(stalls);
+  const ClaimRecord both = made(-0.02, -0.022).judge(stalls);
   EXPECT_EQ(both.verdict, kNotJudged) << "the control stalls as well, so something else does it";
   EXPECT_EQ(both.figure, "the control, vcm, may stall as well: slope -0.02");
   const ClaimRecord without = MadeUp().slope("pt", {0}).errors("vcm", {0, 0, 0, 0, 0}, 1).judge(stalls);

@@ -44,6 +44,13 @@ TEST(JudgeClaims, aScoreThatIsReachedLaterIsNotReachedInThisTime) {
   EXPECT_EQ(falling(MadeUp(), "pt", 0.3, 0.5).verdict(misses), kFails);
 }
 
+TEST(JudgeClaims, aMissedScoreNeverReadsAsTheLimit) {
+  const ClaimRecord missed = MadeUp().curve("pt", "ssim", {0.8996, 0.8996, 0.8996}).judge(reachesScore());
+  EXPECT_EQ(missed.figure, "SSIM of pt is 0.8996, limit 0.9");
+  const ClaimRecord nearer = MadeUp().curve("pt", "ssim", {0.89999, 0.89999, 0.89999}).judge(reachesScore());
+  EXPECT_EQ(nearer.figure, "SSIM of pt is 0.89999, limit 0.9");
+}
+
 // Both are least squares through the points after 4, 8 and 16 s.
 TEST(SceneLosses, slopeOfALossIsThatOfTheLineToATime) {
   const MadeUp made = MadeUp().curve("pt", "ssim", {0.2, 0.43, 0.602, 0.715, 0.802});

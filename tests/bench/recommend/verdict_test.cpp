@@ -47,6 +47,17 @@ TEST(Verdict, isTheSoonestMethod) {
   EXPECT_TRUE(toText(all).starts_with("box: use bpt."));
 }
 
+TEST(Verdict, aMissedSsimNeverReadsAsTheTarget) {
+  RecommendRow missed = rowWithout(Method::lt, true);
+  missed.prediction.ssimNow = 0.85;
+  missed.prediction.ssimLimit = 0.89998;
+  Recommendation all = judged({rowOf(Method::pt, 30, 25, 40), missed});
+  EXPECT_NE(toText(all).find("0.8500 0.89998 "), std::string::npos) << toText(all);
+  all.referenceSsim = 0.8996;
+  judgeRows(all);
+  EXPECT_NE(toText(all).find("known to an SSIM of 0.8996 only"), std::string::npos) << toText(all);
+}
+
 TEST(Verdict, isMissingWhereAMethodThatMayBeBestHasNoWholeImages) {
   const Recommendation all = judged({rowOf(Method::pt, 30, 25, 40), rowWithout(Method::bpt, false, 12)});
   EXPECT_EQ(all.best(), nullptr);
