@@ -35,11 +35,7 @@ Checkpointing::Checkpointing(const CheckpointOptions& options)
                                  options.resume ? "--resume" : "--checkpoint-every"));
   }
   if (options.file == kStandardStream) throw UsageError("--checkpoint -: expected a file");
-  try {
-    lock_.emplace(options.file);
-  } catch (const FileLockError& error) {
-    throw InputError(error.what());
-  }
+  lock_.emplace(options.file);
   // Whether there is one does not change from here on.
   const bool exists = std::filesystem::exists(options.file);
   if (exists && !options.resume) {

@@ -1,20 +1,23 @@
 // wavecrest compare REFERENCE TEST...: metrics of images against one reference, thresholds, false-colour maps.
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/json_text.h"
 #include "bench/report/picture_crop.h"
+#include "bench/score_text.h"
 #include "cli/commands.h"
 #include "cli/compare_page.h"
 #include "cli/compare_results.h"
 #include "cli/file_check.h"
 #include "cli/messages.h"
+#include "library/comparison.h"
 #include "library/option_ranges.h"
 #include "metrics/image/image_io.h"
 #include "metrics/metric_list.h"
@@ -105,22 +108,65 @@ void notePu21Range(const CompareOptions& options, const std::vector<const Metric
 
 // ---- which metrics --------------------------------------------------------------------------------------------------
 
+// Whether a metric was named or has a threshold; metric: its index in metricList().
+bool isAskedFor(const CompareOptions& options, size_t metric) {
+  return hasThreshold(options, metric) ||
+         std::ranges::find(options.metrics, metricList()[metric].name) != options.metrics.end();
+}
+
+// Whether it is measured where the image is large enough: it was asked for, or is a default where none was named.
+bool isWanted(const CompareOptions& options, size_t metric) {
+  return isAskedFor(options, metric) || (options.metrics.empty() && metricList()[metric].byDefault);
+}
+
+// "ssim, flip or cvvdp": the metrics that see such images.
+std::string metricsThatSee(const std::vector<MetricInput>& inputs) {
+  std::vector<std::string_view> names;
+  for (const Metric& metric : metricList()) {
+    if (std::ranges::find(inputs, metric.input) != inputs.end()) names.push_back(metric.name);
+  }
+  const std::string_view last = names.back();
+  names.pop_back();
+  return fmt::format("{} or {}", fmt::join(names, ", "), last);
+}
+
+// Refuses options that nothing of what is measured or shown depends on. Throws UsageError.
+void refuseUnusedOptions(const CompareOptions& options) {
+  const auto sees = [&](MetricInput input) {
+    for (size_t i = 0; i < metricList().size(); ++i) {
+      if (isWanted(options, i) && metricList()[i].input == input) return true;
+    }
+    return false;
+  };
+  if (options.gammaCorrected && !sees(MetricInput::values)) {
+    throw UsageError(
+        fmt::format("--gamma: is for errors of values, which are not measured; expected {} among --metrics",
+                    metricsThatSee({MetricInput::values})));
+  }
+  // Pictures of the page are exposed whatever is measured.
+  const bool exposes =
+      sees(MetricInput::codes) || sees(MetricInput::exposedLight) || options.gammaCorrected || !options.html.empty();
+  if (options.exposure != 0 && !exposes) {
+    throw UsageError(
+        fmt::format("--exposure: changes nothing of what is measured; expected {} among --metrics, --gamma or --html",
+                    metricsThatSee({MetricInput::codes, MetricInput::exposedLight})));
+  }
+}
+
 // What was named, or the defaults that the image is large enough for; a metric with a threshold is always measured.
 // Throws ImageError where the image is too small for a metric that was asked for.
 std::vector<const Metric*> chosenMetrics(const CompareOptions& options, const Image& image) {
   std::vector<const Metric*> chosen;
   for (size_t i = 0; i < metricList().size(); ++i) {
     const Metric& metric = metricList()[i];
-    const bool named = std::find(options.metrics.begin(), options.metrics.end(), metric.name) != options.metrics.end();
-    const bool asked = named || hasThreshold(options, i);
-    if (!asked && !(options.metrics.empty() && metric.byDefault)) continue;
+    if (!isWanted(options, i)) continue;
     if (std::min(image.width, image.height) >= metric.smallestSide) {
       chosen.push_back(&metric);
       continue;
     }
     const std::string wrong =
         fmt::format("image of {}x{} pixels is too small for {}", image.width, image.height, metric.name);
-    if (asked) {
+    if (isAskedFor(options, i)) {
       throw ImageError(options.reference, wrong, fmt::format("expected at least {0}x{0}", metric.smallestSide));
     }
     tell("wavecrest: note: {}, which is left out", wrong);
@@ -184,8 +230,8 @@ bool checkThresholds(const CompareOptions& options, const MeasuredTest& test, bo
                                        [&](const Measured& score) { return score.metric == &metric; });
     const double score = mainScore(metric, measured->measurement), limit = options.limits[i];
     if (metric.higherIsBetter ? score >= limit : score <= limit) continue;
-    tell("wavecrest: check failed: {}{} is {:.9g}; --{} asks for {:.9g}", of, metric.name, score, metric.threshold,
-         limit);
+    tell("wavecrest: check failed: {}{} is {}; --{} asks for {}", of, metric.name,
+         scoreBesideTarget(score, limit, metric.higherIsBetter, 9), metric.threshold, limit);
     held = false;
   }
   if (!asked || test.nonFinitePixels == 0) return held;
@@ -195,13 +241,15 @@ bool checkThresholds(const CompareOptions& options, const MeasuredTest& test, bo
 }
 
 // One test by all metrics. label: names its maps.
-MeasuredTest measure(const PreparedReference& reference, const std::string& file, const std::string& label,
-                     ImageFile image, const std::vector<const Metric*>& metrics, bool withMaps, bool withLight) {
+MeasuredTest measureTest(const PreparedReference& reference, const std::string& file, const std::string& label,
+                         ImageFile image, const std::vector<const Metric*>& metrics, bool withMaps, bool withLight) {
   ComparedImage test = reference.prepareTest(file, std::move(image));
-  MeasuredTest measured{
-      .file = file, .label = label, .picture = {}, .light = {}, .nonFinitePixels = test.nonFinitePixels, .scores = {}};
-  for (const Metric* metric : metrics) measured.scores.push_back({metric, metric->measure(reference, test, withMaps)});
-  measured.picture = reference.pictureOf(test);
+  MeasuredTest measured{.file = file,
+                        .label = label,
+                        .picture = reference.pictureOf(test),
+                        .light = {},
+                        .nonFinitePixels = test.nonFinitePixels,
+                        .scores = measure(reference, test, metrics, withMaps)};
   if (withLight) measured.light = std::move(test.file);
   return measured;
 }
@@ -209,6 +257,7 @@ MeasuredTest measure(const PreparedReference& reference, const std::string& file
 int compare(const CompareOptions& options) {
   // Checks options and file names.
   checkMetricNames(options.metrics);
+  refuseUnusedOptions(options);
   const std::vector<std::string> labels = uniqueLabels(options.tests);
   checkFiles(options, labels);
   // Prepares the reference once for all tests.
@@ -227,7 +276,7 @@ int compare(const CompareOptions& options) {
     ImageFile test = readPart(options, file);
     noteWindows(options, reference.image().file, file, test);
     notePu21Range(options, metrics, file, test);
-    tests.push_back(measure(reference, file, labels[i], std::move(test), metrics, withMaps, !options.html.empty()));
+    tests.push_back(measureTest(reference, file, labels[i], std::move(test), metrics, withMaps, !options.html.empty()));
   }
   // Shows scores, maps and page.
   if (options.printsText()) printText(tests);

@@ -5,12 +5,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "bench/campaign/file_lock.h"
 #include "bench/campaign/run_campaign.h"
-#include "bench/campaign/scene_reference.h"
 #include "bench/json_text.h"
 #include "bench/live/campaign_view.h"
-#include "bench/report/results_folder.h"
 #include "bench/results/read_results.h"
 #include "cli/commands.h"
 #include "cli/findings.h"
@@ -138,7 +135,7 @@ int runConverge(ConvergeOptions options) {
   const auto kind = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
   // Page, signals and what is shown of the campaign.
   const std::unique_ptr<CampaignView> view = openPage(options, settings, kind);
-  InterruptGuard guard(stopLine(options));
+  InterruptGuard guard(messageLine(kind, stopLine(options), ""));
   const CampaignHooks hooks{.session = {.watch = [&](Session* session) { guard.watch(session); },
                                         .goesOn =
                                             [&] {
@@ -160,17 +157,13 @@ int runConverge(ConvergeOptions options) {
                                 },
                             .say =
                                 [&](const std::string& line) {
-                                  if (kind == ProgressKind::jsonl) {
-                                    tell("{}", jsonText(json{{"message", line}}));
-                                  } else if (kind != ProgressKind::none) {
-                                    tell("{}", line);
-                                  }
+                                  if (kind != ProgressKind::none) tellMessage(kind, line, "");
                                 }};
   // Runs the campaign.
   const bool complete = runCampaign(settings, campaignKeys(options, settings), hooks);
   if (view) view->showEnd(complete);
   if (!complete) {
-    tell("{}", stopLine(options));
+    tellMessage(kind, stopLine(options), "");
     return kExitInterrupted;
   }
   printOut("{}\n", results.string());
@@ -179,7 +172,7 @@ int runConverge(ConvergeOptions options) {
   // Judges the findings and writes the report.
   const WrittenReport report = finishCampaign(settings);
   for (const fs::path& file : report.files) printOut("{}\n", file.string());
-  return options.check ? showFindings(report.claims) : kExitDone;
+  return options.check ? showFindings(report.claims, kind) : kExitDone;
 }
 
 }  // namespace
@@ -248,21 +241,8 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
       if (!command.given(std::string(name))) options->defining.erase(std::string(name));
     }
     if (options->directPass) options->defining["--direct-pass"] = {"yes"};
-    // Whatever is wrong with files leaves as InputError.
-    try {
-      forgetCampaignVariables(*options, command);
-      exitCode = runConverge(*options);
-    } catch (const ReferenceError& error) {
-      throw InputError(error.what());
-    } catch (const FileLockError& error) {
-      throw InputError(error.what());
-    } catch (const ReferenceMismatch& error) {
-      throw InputError(error.what());
-    } catch (const ResultsFileError& error) {
-      throw InputError(error.what());
-    } catch (const ResultsError& error) {
-      throw InputError(error.what());
-    }
+    forgetCampaignVariables(*options, command);
+    exitCode = runConverge(*options);
   });
 }
 

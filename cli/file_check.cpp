@@ -1,34 +1,21 @@
 #include "cli/file_check.h"
 
 #include <fmt/core.h>
-#include <poll.h>
-#include <unistd.h>
-
-#include <cstring>
 
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image.h"
 #include "metrics/image/image_io.h"
+#include "metrics/image/real_name.h"
 
 namespace wavecrest {
-namespace {
 
 namespace fs = std::filesystem;
 
-// One name for a file however it is reached.
-fs::path canonicalName(const fs::path& file) {
-  std::error_code error;
-  const fs::path name = fs::weakly_canonical(fs::absolute(file), error);
-  return error ? file.lexically_normal() : name;
-}
-
-}  // namespace
-
 void FileCheck::add(const Use& use, const fs::path& file) {
   if (file == kStandardStream && !use.written) return;  // stdin is not stdout
-  const fs::path name = file == kStandardStream ? file : canonicalName(file);
+  const fs::path name = file == kStandardStream ? file : realName(file);
   std::error_code ignored;
   if (fs::is_character_file(name, ignored)) return;  // /dev/null takes any number of outputs
   const auto [known, first] = uses_.emplace(name, use);
@@ -69,21 +56,14 @@ void FileCheck::reference(const std::string& role, const fs::path& file) {
   output(role, file);
 }
 
-bool readerHasLeft() {
-  pollfd out{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
-  return poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0;
-}
-
 void writeText(const std::string& file, const std::string& text) {
   if (file != kStandardStream) {
     writeFileAtomically(file, text);
     return;
   }
   writeStdout(text);
-  const int error = flushStdout();
-  // A reader that has enough, as `head`, is no error. main() asks the same.
-  if (error == 0 || readerHasLeft()) return;
-  throw ImageError("stdout", fmt::format("writing failed: {}", std::strerror(error)), "expected somebody who reads");
+  const std::string failure = takeStdoutFailure();
+  if (!failure.empty()) throw ImageError(failure);
 }
 
 }  // namespace wavecrest

@@ -34,10 +34,8 @@ class FileCheck {
   std::map<std::filesystem::path, Use> uses_;
 };
 
-// Whether stdout is a pipe whose reader has closed it, as `head` does once it has its lines.
-bool readerHasLeft();
-
-// Replaces the file, or writes to stdout. Throws ImageError where that fails for another reason than that.
+// Replaces the file, or writes to stdout. Throws ImageError where that fails, but not where the reader of stdout has
+// enough.
 void writeText(const std::string& file, const std::string& text);
 
 }  // namespace wavecrest

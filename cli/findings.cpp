@@ -6,21 +6,24 @@
 
 namespace wavecrest {
 
-int showFindings(std::span<const ReportClaim> claims) {
+int showFindings(std::span<const ReportClaim> claims, ProgressKind kind) {
   bool held = true;
   size_t judged = 0;
   for (const ReportClaim& claim : claims) {
     printOut("{:24} {}: {} ({})\n", claim.verdict, claim.scene, claim.statement, claim.figure);
     judged += claim.verdict == toString(ClaimVerdict::notJudged) ? 0 : 1;
     if (claim.verdict != toString(ClaimVerdict::fails)) continue;
-    tell("wavecrest: check failed: {}: {}", claim.scene, claim.statement);
+    tellFailedCheck(kind, fmt::format("{}: {}", claim.scene, claim.statement));
     held = false;
   }
   if (judged < claims.size()) {
-    tell("{} of {} findings were not judged, for the reasons above", claims.size() - judged, claims.size());
+    tellMessage(
+        kind,
+        fmt::format("{} of {} findings were not judged, for the reasons above", claims.size() - judged, claims.size()),
+        "");
   }
   if (judged == 0) {
-    tell("wavecrest: check failed: nothing was checked, as no finding could be judged");
+    tellFailedCheck(kind, "nothing was checked, as no finding could be judged");
     held = false;
   }
   return held ? kExitDone : kExitCheck;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <csignal>
+#include <iterator>
 #include <string>
 
 #include "engine/session/session.h"
@@ -26,7 +27,7 @@ class InterruptGuard {
   // lineAtEnd, if there is one, on stderr and kExitInterrupted.
   void setIdle(bool idle);
   // The session that is to stop, or null while none renders. One that comes after a signal is stopped at once. The
-  // program is no longer idle.
+  // program is no longer idle. Once it returns nobody holds the former session, which may end.
   void watch(Session* session);
   // By a signal, or by stop().
   bool interrupted() const;
@@ -48,7 +49,19 @@ class InterruptGuard {
 
  private:
   static constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1};
-  struct sigaction previous_[5]{};
+  struct sigaction previous_[std::size(kSignals)]{};
+};
+
+// Watches a session for its lifetime, also where an exception ends it.
+class SessionWatch {
+ public:
+  SessionWatch(InterruptGuard& guard, Session& session) : guard_(guard) { guard_.watch(&session); }
+  ~SessionWatch() { guard_.watch(nullptr); }
+  SessionWatch(const SessionWatch&) = delete;
+  SessionWatch& operator=(const SessionWatch&) = delete;
+
+ private:
+  InterruptGuard& guard_;
 };
 
 }  // namespace wavecrest

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <exception>
 #include <optional>
 #include <string>
@@ -19,7 +18,6 @@
 #include "bench/ranks/launch.h"
 #include "cli/commands.h"
 #include "cli/failure.h"
-#include "cli/file_check.h"
 #include "cli/messages.h"
 #include "engine/version.h"
 
@@ -117,9 +115,9 @@ int run(std::vector<std::string> arguments) {
   } catch (...) {
     exitCode = report(std::current_exception());
   }
-  const int error = flushStdout();
-  if (error == 0 || readerHasLeft()) return exitCode;
-  tell("wavecrest: error: stdout: writing failed: {}; expected somebody who reads", std::strerror(error));
+  const std::string unsaid = takeStdoutFailure();
+  if (unsaid.empty()) return exitCode;
+  tell("wavecrest: error: {}", unsaid);
   return exitCode == kExitDone ? kExitFailure : exitCode;
 }
 

@@ -1,17 +1,26 @@
 #include "cli/messages.h"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 namespace wavecrest {
 namespace {
 
-int firstStdoutError = 0;
+int firstStdoutError = 0;  // errno
+bool stdoutFailureTaken = false;
 
 void noteStdout(bool written) {
   if (!written && firstStdoutError == 0) firstStdoutError = errno;
+}
+
+// Whether stdout is a pipe whose reader has closed it, as `head` does once it has its lines.
+bool readerHasLeft() {
+  pollfd out{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+  return poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0;
 }
 
 }  // namespace
@@ -27,9 +36,13 @@ void writeStderr(std::string_view text) {
 
 void writeStdout(std::string_view text) { noteStdout(std::fwrite(text.data(), 1, text.size(), stdout) == text.size()); }
 
-int flushStdout() {
-  noteStdout(std::fflush(stdout) == 0);
-  return firstStdoutError;
+void flushStdout() { noteStdout(std::fflush(stdout) == 0); }
+
+std::string takeStdoutFailure() {
+  flushStdout();
+  if (firstStdoutError == 0 || stdoutFailureTaken || readerHasLeft()) return {};
+  stdoutFailureTaken = true;
+  return fmt::format("stdout: writing failed: {}; expected somebody who reads", std::strerror(firstStdoutError));
 }
 
 }  // namespace wavecrest

@@ -1,9 +1,10 @@
 // Lines for people on stderr, and results on stdout. A closed pipe or a full disk behind them never ends a command:
-// what cannot be said is left unsaid. main() reports a failure of stdout.
+// what cannot be said is left unsaid. main() tells of a failure of stdout, unless the command has.
 #pragma once
 
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -25,7 +26,11 @@ void printOut(fmt::format_string<Arguments...> format, Arguments&&... arguments)
   writeStdout(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
-// Writes what is buffered. Returns the errno of the first failure of these functions, 0 for none.
-int flushStdout();
+// Writes what is buffered.
+void flushStdout();
+
+// Writes what is buffered. What is wrong with stdout by now, as a complete text; empty where all was written, where
+// stdout is a pipe whose reader has enough, as `head`, and once an earlier call has returned it: who gets it, tells it.
+std::string takeStdoutFailure();
 
 }  // namespace wavecrest

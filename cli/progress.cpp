@@ -72,6 +72,20 @@ void warn(ProgressKind kind, const std::string& text) {
   noteLine(told(kind), {{"warning", text}}, "warning: " + text);
 }
 
+std::string messageLine(ProgressKind kind, const std::string& text, std::string_view prefix) {
+  if (kind == ProgressKind::jsonl) return jsonText(nlohmann::ordered_json{{"message", text}});
+  return std::string(prefix) + text;
+}
+
+void tellMessage(ProgressKind kind, const std::string& text, std::string_view prefix) {
+  tell("{}", messageLine(kind, text, prefix));
+}
+
+void tellFailedCheck(ProgressKind kind, const std::string& text) {
+  if (kind == ProgressKind::jsonl) return tell("{}", jsonText(nlohmann::ordered_json{{"check_failed", text}}));
+  tell("wavecrest: check failed: {}", text);
+}
+
 std::vector<std::string> notesSoFar() {
   NoteList& list = noteList();
   const std::lock_guard<std::mutex> lock(list.mutex);

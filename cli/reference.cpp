@@ -5,10 +5,8 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 #include <utility>
 
-#include "bench/campaign/file_lock.h"
 #include "bench/campaign/reference_agreement.h"
 #include "bench/campaign/render_reference.h"
 #include "bench/results/noise_floors.h"
@@ -18,11 +16,13 @@
 #include "cli/file_check.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/progress.h"
 #include "cli/render_messages.h"
 #include "cli/scene_options.h"
 #include "engine/inspect/path_classes.h"
 #include "engine/plan/render_settings.h"
 #include "engine/session/session.h"
+#include "engine/tasks/processors.h"
 #include "library/option_ranges.h"
 #include "library/option_values.h"
 #include "scenes/scene_list.h"
@@ -93,7 +93,7 @@ RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, 
   settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
   settings.isa = parseIsaOption(options.isa);
   settings.seed = options.seed;
-  settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  settings.threads = threadsOrAll(options.threads);
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   if (options.radius != kReferenceRadius && !mergesPaths(method)) {
     throw UsageError(
@@ -165,7 +165,7 @@ int runReference(const ReferenceOptions& options) {
   const ProgressKind kind =
       quietIf(options.quiet, static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)));
   // Loads the scene and chooses the method.
-  InterruptGuard guard("wavecrest: interrupted while loading; " + output + " is as it was");
+  InterruptGuard guard(messageLine(kind, "interrupted while loading; " + output + " is as it was"));
   const Scene scene = loadScene(options.scene, kind);
   printNotes(scene, kind);
   for (const std::string& file : scene.files) files.input("the scene", file);
@@ -197,38 +197,30 @@ int runReference(const ReferenceOptions& options) {
                              .stopped = [&] { return guard.interrupted(); },
                              .saveNow = [&] { return std::exchange(saveNow, false) || guard.takeSaveRequest(); },
                              .advance = [&](const ReferenceInfo& info) { line.show(info); }};
-  try {
-    if (!options.larger.empty()) beginReference(scene, settings, options.larger, output);
-    // Renders both halves. renderReference writes the file, also after a signal.
-    const Reference reference = renderReference(scene, settings, method.reason, goal, output, hooks);
-    line.end();
-    if (reference.info.iterations == 0) {
-      tell("wavecrest: interrupted before anything was rendered; no reference was written");
-      return kExitInterrupted;
+  if (!options.larger.empty()) beginReference(scene, settings, options.larger, output);
+  // Renders both halves. renderReference writes the file, also after a signal.
+  const Reference reference = renderReference(scene, settings, method.reason, goal, output, hooks);
+  line.end();
+  if (reference.info.iterations == 0) {
+    tellMessage(kind, "interrupted before anything was rendered; no reference was written");
+    return kExitInterrupted;
+  }
+  if (!goal.seconds && !goal.iterations && isBlack(reference.mean.pixels) && !guard.interrupted()) {
+    throw InputError(
+        fmt::format("{}: is black after {} iterations of each half, so its relative error is not known; expected a "
+                    "scene that the method finds light in, or --time or --spp",
+                    output, reference.info.iterations));
+  }
+  if (!options.compact.empty() && !guard.interrupted()) writeCompactReference(options.compact, reference);
+  showReference(output, reference, kind);
+  // Checks it against another reference of the scene.
+  if (other && !guard.interrupted()) {
+    const Agreement agreement = compareReferences(reference, *other);
+    printOut("{} and {} {}\n", output, options.agreeWith, agreement.describe());
+    if (!agreement.agrees()) {
+      tellFailedCheck(kind, fmt::format("{} and {} are of different truths", output, options.agreeWith));
+      return kExitCheck;
     }
-    if (!goal.seconds && !goal.iterations && isBlack(reference.mean.pixels) && !guard.interrupted()) {
-      throw InputError(
-          fmt::format("{}: is black after {} iterations of each half, so its relative error is not known; expected a "
-                      "scene that the method finds light in, or --time or --spp",
-                      output, reference.info.iterations));
-    }
-    if (!options.compact.empty() && !guard.interrupted()) writeCompactReference(options.compact, reference);
-    showReference(output, reference, kind);
-    // Checks it against another reference of the scene.
-    if (other && !guard.interrupted()) {
-      const Agreement agreement = compareReferences(reference, *other);
-      printOut("{} and {} {}\n", output, options.agreeWith, agreement.describe());
-      if (!agreement.agrees()) {
-        tell("wavecrest: check failed: {} and {} are of different truths", output, options.agreeWith);
-        return kExitCheck;
-      }
-    }
-  } catch (const ReferenceMismatch& error) {
-    throw InputError(error.what());
-  } catch (const FileLockError& error) {
-    throw InputError(error.what());
-  } catch (const ReferenceComparisonError& error) {
-    throw InputError(error.what());
   }
   return guard.interrupted() ? kExitInterrupted : kExitDone;
 }

@@ -29,16 +29,6 @@
 namespace wavecrest {
 namespace {
 
-// What `make` makes: a session or a plan. A memory budget that is too small is a UsageError of --memory.
-template <class Make>
-auto withinMemory(Make make) {
-  try {
-    return make();
-  } catch (const MemoryBudgetError& error) {
-    throw UsageError(fmt::format("--memory: {}", error.what()));
-  }
-}
-
 // The goal of the --until options. Throws UsageError for options that do not go with a goal.
 UntilGoal untilGoal(const RenderOptions& options, const RenderSettings& settings, const FilmArea& film) {
   if (!options.snapshotEvery.empty()) {
@@ -144,7 +134,8 @@ void RenderRun::check() {
   settings_.measureStages = measures;
   names_ = {options_.outputs,         options_.stats,    options_.snapshotEvery,
             options_.checkpoint.file, options_.exposure, options_.partial};
-  guard_.emplace(ranks_.first() ? "wavecrest: interrupted before anything was rendered; no image was written" : "");
+  guard_.emplace(ranks_.first() ? messageLine(kind_, "interrupted before anything was rendered; no image was written")
+                                : "");
   checkOutputs(names_, {findScene(options_.scene.scene)}, options_.until.reference);
   checkpointing_.emplace(options_.checkpoint);
   earlier_ = checkpointing_->takeEarlier();
@@ -175,7 +166,7 @@ void RenderRun::load() {
 
 // Makes the session, connects viewers and outputs, and goes on from the checkpoint.
 void RenderRun::build() {
-  session_ = withinMemory([&] { return Session::create(scene_, settings_); });
+  session_ = Session::create(scene_, settings_);
   const RenderStatistics statistics = session_->statistics();
   tellPlan(options_, scene_, settings_, kind_, statistics.renderedBy(settings_.method), session_->memoryPlan(),
            session_->film().spreads());
@@ -208,7 +199,7 @@ int RenderRun::runTogether() {
   if (options_.pin) settings_.placement = ranks_.pinned(settings_.threads, kind_);
   if (options_.dryRun) {
     ranks_.together([this] {
-      const DryPlan plan = withinMemory([&] { return planWithoutSession(scene_, settings_); });
+      const DryPlan plan = planWithoutSession(scene_, settings_);
       tellPlan(options_, scene_, settings_, kind_, plan.method, plan.memory, plan.spreads);
       if (ranks_.first()) showPlan(options_, scene_, settings_, plan);
     });
@@ -254,8 +245,6 @@ Ending RenderRun::render() {
     stopped = !goesOn();
     return !stopped;
   };
-  // From here on signals interrupt the session.
-  guard_->watch(&live_->interruptible(*session_));
   std::optional<uint64_t> goalPaths;
   if (const std::optional<uint64_t> iterations = settings_.jointIterations()) {
     // A part of an mlt render has some of the chains, in all iterations. Under a launcher, progress counts the paths of
@@ -264,7 +253,9 @@ Ending RenderRun::render() {
     goalPaths = pathsOf(*iterations, session_->film().area()) / parts;
   }
   {
-    // Progress lives in a block of its own: its end completes the line on the terminal.
+    // In this block signals interrupt the session, and find none behind it. The end of Progress completes the line on
+    // the terminal.
+    const SessionWatch watch(*guard_, live_->interruptible(*session_));
     const Progress progress(kind_, *session_, settings_.seconds, goalPaths, ranks_.pathsElsewhere());
     // A goal of quality renders in steps of its own, without snapshots.
     if (until_) {
@@ -281,8 +272,6 @@ Ending RenderRun::render() {
           goOnUnlessStopped, firstSnapshot_);
     }
   }
-  // Signals find no session from here on.
-  guard_->watch(nullptr);
   if (until_ && until_->black() && !stopped) {
     throw InputError(
         fmt::format("--until-relative-error: after {} iterations the image is black, which has no relative error; "
@@ -347,7 +336,7 @@ int RenderRun::endWithoutImage(Ending ending, const RenderStatistics& statistics
   const std::string when =
       statistics.paths == 0 ? "before anything was rendered" : "before one whole pass over the film";
   if (ending == Ending::stopped) {
-    tell("wavecrest: interrupted {}; no {} was written", when, what);
+    tellMessage(kind_, fmt::format("interrupted {}; no {} was written", when, what));
     return kExitInterrupted;
   }
   const double passes =

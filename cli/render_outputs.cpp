@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <exception>
 #include <filesystem>
+#include <new>
+#include <optional>
 
 #include "bench/campaign/render_stats.h"
 #include "bench/checkpoint/checkpoint.h"
@@ -16,7 +17,8 @@
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/messages.h"
-#include "metrics/image/image_io.h"
+#include "metrics/image/real_name.h"
+#include "metrics/image/srgb.h"
 
 namespace wavecrest {
 namespace {
@@ -37,19 +39,10 @@ bool isSnapshotOf(const std::string& image, const std::string& file) {
   unsigned number = 0;
   const auto [end, error] = std::from_chars(digits.data() + 1, digits.data() + digits.size(), number);
   if (error != std::errc() || end != digits.data() + digits.size()) return false;
-  std::error_code ignored;
-  return fs::weakly_canonical(fs::absolute(snapshotFile(image, number)), ignored) ==
-         fs::weakly_canonical(fs::absolute(file), ignored);
+  return realName(snapshotFile(image, number)) == realName(file);
 }
 
 bool isPng(const std::string& file) { return extensionOf(file) == ".png"; }
-
-// The image brighter by so many stops.
-Image exposed(Image image, double stops) {
-  const auto factor = static_cast<float>(std::exp2(stops));
-  for (float& value : image.pixels) value *= factor;
-  return image;
-}
 
 }  // namespace
 
@@ -79,18 +72,21 @@ void checkOutputs(const OutputNames& names, const std::vector<std::string>& inpu
 }
 
 // A file that cannot be written is reported, and remembered until it is written after all, but does not end the render,
-// nor keep others from being written.
+// nor keep others from being written. All that is made for the file alone, such as its image, belongs to the step:
+// memory may be short for a while.
 template <class Step>
 bool RenderOutputs::attempt(const std::string& file, Step step) {
   try {
     step();
+    failed_.erase(file);
+    return true;
+  } catch (const std::bad_alloc&) {
+    tell("wavecrest: error: {}: no memory to write it; expected more memory, or a smaller film", file);
   } catch (const std::exception& error) {
     tell("wavecrest: error: {}", error.what());
-    failed_.insert(file);
-    return false;
   }
-  failed_.erase(file);
-  return true;
+  failed_.insert(file);
+  return false;
 }
 
 Rendered renderedBy(const Session& session) {
@@ -134,39 +130,45 @@ void RenderOutputs::save(const Rendered& rendered) {
 void RenderOutputs::write(const Rendered& rendered, const std::string& statsFile, bool images) {
   // The statistics go into the images as attributes, and into a file of their own.
   nlohmann::ordered_json all;
-  attempt(names_.stats, [&] {
+  attempt(names_.stats.empty() ? "the statistics" : names_.stats, [&] {
     all = stats(rendered.statistics, rendered.processes);
     if (!until_.is_null()) all["until"] = until_;
   });
   const Metadata metadata = statsMetadata(all);
-  const std::vector<std::string> none;
-  const std::vector<std::string>& names = images ? names_.images : none;
-  const Image image = names.empty() ? Image() : rendered.image();
-  for (const std::string& name : names) {
-    attempt(name, [&] {
-      WritingProgress progress(kind_, name);
-      const auto show = [&](double fraction) { progress.show(fraction); };
-      if (names_.exposure != 0 && isPng(name)) {
-        writeImage(name, exposed(image, names_.exposure), metadata, show);
-      } else {
-        writeImage(name, image, metadata, show);
-      }
-    });
-  }
+  if (images) writeImages(rendered, metadata);
   if (!statsFile.empty() && !all.is_null()) {
     attempt(statsFile, [&] { writeText(statsFile, jsonText(all, 2) + "\n"); });
   }
 }
 
+// The image is made once, under the first name that there is memory for it.
+void RenderOutputs::writeImages(const Rendered& rendered, const Metadata& metadata) {
+  std::optional<Image> image;
+  for (const std::string& name : names_.images) {
+    attempt(name, [&] {
+      if (!image) image = rendered.image();
+      WritingProgress progress(kind_, name);
+      const auto show = [&](double fraction) { progress.show(fraction); };
+      if (isPng(name)) {
+        writePng(name, encodeSrgb8(*image, names_.exposure));
+      } else {
+        writeImage(name, *image, metadata, show);
+      }
+    });
+  }
+}
+
 bool RenderOutputs::writeCheckpoint(const Session& session, const std::string& file) {
   if (file.empty() || session.statistics().paths == 0) return false;
-  // The notes are what goOnFrom reads, time, schedule and snapshots so far, and the statistics for `merge`.
-  const nlohmann::ordered_json notes = {{"wall_seconds", wallSeconds()},
-                                        {"snapshot_every", names_.snapshotEvery},
-                                        {"snapshots", snapshotNotes(snapshots_)},
-                                        {"next_snapshot", nextSnapshot_},
-                                        {"stats", stats(session.statistics(), {})}};
-  return attempt(file, [&] { wavecrest::writeCheckpoint(file, scene_, settings_, session, notes); });
+  return attempt(file, [&] {
+    // The notes are what goOnFrom reads, time, schedule and snapshots so far, and the statistics for `merge`.
+    const nlohmann::ordered_json notes = {{"wall_seconds", wallSeconds()},
+                                          {"snapshot_every", names_.snapshotEvery},
+                                          {"snapshots", snapshotNotes(snapshots_)},
+                                          {"next_snapshot", nextSnapshot_},
+                                          {"stats", stats(session.statistics(), {})}};
+    wavecrest::writeCheckpoint(file, scene_, settings_, session, notes);
+  });
 }
 
 void RenderOutputs::goOnFrom(const nlohmann::ordered_json& notes, const Session& session) {

@@ -17,6 +17,7 @@
 #include "engine/session/session.h"
 #include "engine/session/snapshots.h"
 #include "metrics/image/image.h"
+#include "metrics/image/image_io.h"
 #include "wavecrest/results.h"
 
 namespace wavecrest {
@@ -81,6 +82,7 @@ class RenderOutputs {
   nlohmann::ordered_json stats(const RenderStatistics& statistics, const nlohmann::ordered_json& processes) const;
   double wallSeconds() const;
   void write(const Rendered& rendered, const std::string& statsFile, bool images);  // statsFile: empty for none
+  void writeImages(const Rendered& rendered, const Metadata& metadata);
   // Runs a step that writes the file. Returns whether it did.
   template <class Step>
   bool attempt(const std::string& file, Step step);

@@ -14,6 +14,7 @@
 #include "cli/file_check.h"
 #include "cli/messages.h"
 #include "cli/pinning.h"
+#include "engine/tasks/processors.h"
 
 namespace wavecrest {
 namespace {

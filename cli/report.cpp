@@ -5,15 +5,12 @@
 #include <vector>
 
 #include "bench/claims/judge_claims.h"
-#include "bench/report/results_folder.h"
 #include "bench/report/write_report.h"
 #include "bench/results/read_results.h"
-#include "bench/results/results_error.h"
 #include "bench/results/results_store.h"
 #include "cli/commands.h"
 #include "cli/findings.h"
 #include "cli/messages.h"
-#include "metrics/image/image.h"
 
 namespace wavecrest {
 namespace {
@@ -57,29 +54,20 @@ void addReportCommand(CommandLine& program, int& exitCode) {
   command.addFlag("--plots", options->files.plots, "also write each plot as DIR/plots/SCENE.METRIC.svg");
   command.addFlag("--judge", options->judge, "judge the study's findings anew, by the conditions of this program");
   command.addFlag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
-  // Whatever is wrong with the input leaves as InputError.
   command.run([options, &exitCode] {
     exitCode = kExitDone;
     const std::vector<std::filesystem::path> paths(options->paths.begin(), options->paths.end());
-    try {
-      // The verdicts come first, because the report shows them.
-      if (options->judge) judgeAnew(paths);
-      options->files.reference = options->reference;
-      const WrittenReport report = writeReport(paths, options->files);
-      for (const auto& file : report.files) printOut("{}\n", file.string());
-      // --check: the exit code tells whether all findings hold.
-      if (!options->check) return;
-      if (report.claims.empty()) {
-        throw InputError(options->paths[0] + ": holds no judged finding; expected a campaign by time that is over");
-      }
-      exitCode = showFindings(report.claims);
-    } catch (const ResultsError& error) {
-      throw InputError(error.what());
-    } catch (const ResultsFileError& error) {
-      throw InputError(error.what());
-    } catch (const ImageError& error) {
-      throw InputError(error.what());
+    // The verdicts come first, because the report shows them.
+    if (options->judge) judgeAnew(paths);
+    options->files.reference = options->reference;
+    const WrittenReport report = writeReport(paths, options->files);
+    for (const auto& file : report.files) printOut("{}\n", file.string());
+    // --check: the exit code tells whether all findings hold.
+    if (!options->check) return;
+    if (report.claims.empty()) {
+      throw InputError(options->paths[0] + ": holds no judged finding; expected a campaign by time that is over");
     }
+    exitCode = showFindings(report.claims);
   });
 }
 

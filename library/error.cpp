@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/campaign/file_lock.h"
+#include "bench/campaign/reference_agreement.h"
 #include "bench/campaign/render_reference.h"
 #include "bench/campaign/scene_reference.h"
+#include "bench/checkpoint/checkpoint.h"
 #include "bench/report/results_folder.h"
 #include "bench/results/results_error.h"
 #include "engine/load/load.h"
@@ -69,6 +71,8 @@ api::Error currentError() {
     return error;
   } catch (const UsageError& error) {
     return {api::ErrorKind::usage, error.what()};
+  } catch (const InputError& error) {
+    return inputError(error);
   } catch (const MemoryBudgetError& error) {
     return {api::ErrorKind::usage, std::string("--memory: ") + error.what()};
   } catch (const MissingFileError& error) {
@@ -81,11 +85,15 @@ api::Error currentError() {
     return inputError(error);
   } catch (const ImageError& error) {
     return inputError(error);
+  } catch (const CheckpointError& error) {
+    return inputError(error);
   } catch (const ReferenceError& error) {
     return inputError(error);
   } catch (const FileLockError& error) {
     return inputError(error);
   } catch (const ReferenceMismatch& error) {
+    return inputError(error);
+  } catch (const ReferenceComparisonError& error) {
     return inputError(error);
   } catch (const ResultsError& error) {
     return inputError(error);

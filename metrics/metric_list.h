@@ -23,11 +23,20 @@ struct Measurement {
   std::vector<float> map;  // badness of each pixel, 0 = none; empty unless asked for
 };
 
+// What a metric sees of an image.
+enum class MetricInput {
+  values,        // as read, or with --gamma as 8-bit codes
+  codes,         // 8-bit sRGB, exposed
+  exposedLight,  // linear light, exposed
+  lightAsRead    // linear light, whatever the exposure
+};
+
 struct Metric {
   std::string_view name;     // "ssim": of --metrics and of JSON keys
   std::string_view symbol;   // for axes and table heads: "SSIM"
   std::string_view title;    // for people
   std::string_view basis;    // what it looks at, for people
+  MetricInput input;         // the same, for options that change it
   std::string_view formula;  // of test x and reference r, or who defined it
   std::string_view score;    // name of the score that curves and thresholds use; empty: the only one
   bool higherIsBetter;

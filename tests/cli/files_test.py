@@ -94,6 +94,18 @@ class Checks(CommandTest):
         self.assertTrue(pathlib.Path(self.path("target.pfm")).read_bytes().startswith(b"PF"))
         self.assertFalse(os.path.isfile("/dev/null"))
 
+    def test_a_link_to_a_file_that_is_not_there_yet_leads_to_it(self):
+        os.symlink("target.pfm", self.path("link.pfm"))
+        both = ("-o", "link.pfm", "-o", "target.pfm")
+        self.assert_one_error_line(self.render(*self.LONG, *both, expect=USAGE), r".*expected a file of its own")
+        self.render("--spp", "1", "-o", "link.pfm")
+        self.assertTrue(os.path.islink(self.path("link.pfm")))
+        self.assertTrue(pathlib.Path(self.path("target.pfm")).read_bytes().startswith(b"PF"))
+        os.symlink("loop.pfm", self.path("loop.pfm"))
+        self.assert_one_error_line(
+            self.render(*self.LONG, "-o", "loop.pfm", expect=USAGE), r".*is a link that leads to no file"
+        )
+
 
 class Names(CommandTest):
     def run_bytes(self, *arguments):
@@ -157,8 +169,12 @@ class Streams(CommandTest):
             arguments = ["render", "cornell-diffuse", "--size", "8x8", "--spp", "1", "-o", "a.exr", "--stats", "-"]
             result = self.run_with(*arguments, stdout=full, stderr=subprocess.PIPE)
             self.assertEqual(result.returncode, INPUT)
-            self.assertIn("stdout: writing failed", result.stderr)
+            self.assertEqual(result.stderr.count("stdout: writing failed"), 1, result.stderr)
             read_exr_header(self.path("a.exr"))
+            arguments = ["compare", "a.exr", "a.exr", "--metrics", "rmse", "--html", "-"]
+            result = self.run_with(*arguments, stdout=full, stderr=subprocess.PIPE)
+            self.assertEqual(result.returncode, INPUT)
+            self.assert_one_error_line(result, r"stdout: writing failed: No space left on device")
 
     def test_nobody_has_to_listen_to_progress(self):
         for kind in ("bar", "jsonl"):

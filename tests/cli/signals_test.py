@@ -3,6 +3,8 @@
 import json
 import os
 import pathlib
+import re
+import resource
 import signal
 import subprocess
 import time
@@ -15,9 +17,9 @@ SMALL = ["cornell-diffuse", "--size", "32x24", "--threads", "1"]
 
 
 class Signals(CommandTest):
-    def started(self, *arguments):
-        """A render of ten minutes, once paths are traced."""
-        process = self.start("render", *SMALL, "--time", "10m", "--progress", "jsonl", *arguments)
+    def started(self, *arguments, scene=SMALL, limit="10m"):
+        """A render, of ten minutes unless told otherwise, once paths are traced."""
+        process = self.start("render", *scene, "--time", limit, "--progress", "jsonl", *arguments)
         for line in process.stderr:
             if '"paths":' in line and not line.rstrip().endswith('"paths":0}'):
                 break
@@ -68,6 +70,22 @@ class Render(Signals):
         self.assertGreater(iterations[0], 0)
         self.assertGreater(iterations[2], iterations[0])
 
+    def test_a_save_for_which_there_is_no_memory_does_not_end_the_render(self):
+        # The image takes 35 MB, more than malloc ever keeps for reuse of what it got from the system in one piece.
+        large = ["cornell-diffuse", "--size", "2048x1408", "--threads", "1"]
+        process = self.started("--partial", "-o", "image.exr", "--stats", "stats.json", scene=large, limit="60s")
+        status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+        size = 1024 * int(re.search(r"^VmSize:\s+(\d+) kB$", status, re.MULTILINE)[1])
+        unlimited = resource.prlimit(process.pid, resource.RLIMIT_AS)
+        resource.prlimit(process.pid, resource.RLIMIT_AS, (size + (8 << 20), unlimited[1]))
+        process.send_signal(signal.SIGUSR1)
+        said = next((line for line in process.stderr if "no memory" in line), "")
+        self.assertIn("image.exr: no memory to write it; expected ", said)
+        resource.prlimit(process.pid, resource.RLIMIT_AS, unlimited)
+        process.send_signal(signal.SIGTERM)
+        self.end(process, INTERRUPTED)
+        read_exr_header(self.path("image.exr"))
+
     def test_stdout_gets_the_last_statistics_alone(self):
         process = self.started("-o", "image.exr", "--stats", "-")
         for _ in range(2):
@@ -112,6 +130,15 @@ class Render(Signals):
             self.assertIn("before anything was rendered", error)
             self.assertFalse((self.folder / "image.exr").exists())
 
+    def test_jsonl_is_json_only_when_a_signal_comes_while_a_scene_is_loaded(self):
+        for command in ("render", "reference"):
+            process = self.start(command, "-", "-o", "image.exr", "--progress", "jsonl", stdin=subprocess.PIPE)
+            process.stdin.write("<scene>" + " " * (1 << 17))
+            process.stdin.flush()
+            process.send_signal(signal.SIGTERM)
+            _, error = self.end(process, INTERRUPTED)
+            self.assertRegex(json.loads(error)["message"], "^interrupted ")
+
 
 class Reference(Signals):
     def begin(self):
@@ -148,7 +175,9 @@ class Campaign(Signals):
         self.assertIsNone(process.poll())
         process.send_signal(signal.SIGTERM)
         _, error = self.end(process, INTERRUPTED)
-        self.assertIn("--resume", error)
+        for line in error.splitlines():
+            self.assertIsInstance(json.loads(line), dict, line)
+        self.assertIn("--resume", json.loads(error.splitlines()[-1])["message"])
 
 
 if __name__ == "__main__":

@@ -90,7 +90,8 @@ class Usage(CommandTest):
         for arguments, answer in [
             (["--radius", "0.2"], r"--radius: pt does not merge; expected ppm, bpm, vcm or evcm$"),
             (["-m", "lt", "--radius-alpha", "0.1"], r"--radius-alpha: lt does not merge; expected ppm, bpm, vcm or evcm$"),
-            (["--light-paths", "9"], r"--light-paths: pt has one light path .*; expected ppm, bpm, vcm or evcm$"),
+            (["--light-paths", "9"], r"--light-paths: pt traces no photons to merge with; expected ppm, bpm, vcm or evcm$"),
+            (["-m", "lt", "--light-paths", "9"], r"--light-paths: lt traces no photons to merge with; expected ppm, bpm, vcm or evcm$"),
             (["-m", "vcm", "--direct-pass"], r"--direct-pass: vcm has no such choice; expected ppm$"),
             (["-m", "ppm", "--merge-vertices", "all"], r"--merge-vertices: ppm has no choice of .*; expected vcm or evcm$"),
             (["-m", "vcm", "--merge-vertices", "none"], r"--merge-vertices none: unknown; expected one of all, first"),

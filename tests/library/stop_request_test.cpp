@@ -3,26 +3,13 @@
 
 #include <atomic>
 #include <memory>
-#include <stdexcept>
 #include <thread>
 
 #include "library/stop_watch.h"
+#include "tests/library/idle_session.h"
 
 namespace wavecrest {
 namespace {
-
-// Can be interrupted, and nothing else.
-class IdleSession : public Session {
- public:
-  void renderUntil(std::optional<uint64_t>, std::optional<double>) override {}
-  RenderStatistics statistics() const override { return {}; }
-  const Film& film() const override { throw std::logic_error("no film"); }
-  const MemoryPlan& memoryPlan() const override { throw std::logic_error("no plan"); }
-  void save(StateWriter&) const override {}
-  void restore(StateReader&) override {}
-  double progressSeconds() const override { return 0; }
-  uint64_t progressPaths() const override { return 0; }
-};
 
 TEST(StopRequest, reachesTheSessionThatIsWatchedAndLaterOnes) {
   IdleSession first, second, after;

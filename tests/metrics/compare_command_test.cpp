@@ -106,6 +106,25 @@ TEST_F(CompareCommand, MeasuresOnlyTheNamedMetrics) {
   EXPECT_NE(run.error.find("psnr"), std::string::npos);
 }
 
+TEST_F(CompareCommand, RefusesOptionsThatNothingMeasuredDependsOn) {
+  const auto refusal = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {golden("ref"), golden("test")});
+    const auto run = runCompare(options);
+    EXPECT_EQ(run.exitCode, run.error.empty() ? kExitDone : kExitUsage) << run.error;
+    return run.error;
+  };
+  EXPECT_EQ(refusal({"--gamma", "--metrics", "ssim,flip"}),
+            "--gamma: is for errors of values, which are not measured; expected rmse, relmse or mape among --metrics");
+  EXPECT_EQ(refusal({"--exposure", "1", "--metrics", "rmse,hdrflip"}),
+            "--exposure: changes nothing of what is measured; expected ssim, hdrvdp2, flip, msssim, pu21psnr, pu21ssim "
+            "or cvvdp among --metrics, --gamma or --html");
+  EXPECT_EQ(refusal({"--gamma", "--metrics", "ssim,mape"}), "");
+  EXPECT_EQ(refusal({"--gamma", "--metrics", "flip", "--max-rmse", "1"}), "") << "a threshold has its metric measured";
+  EXPECT_EQ(refusal({"--exposure", "1", "--metrics", "flip"}), "");
+  EXPECT_EQ(refusal({"--exposure", "1", "--metrics", "rmse", "--gamma"}), "");
+  EXPECT_EQ(refusal({"--exposure", "1", "--metrics", "rmse", "--html", files_.path("page.html")}), "");
+}
+
 TEST_F(CompareCommand, ThresholdsDecideBetweenExitCodes0And4) {
   const auto exitCode = [&](const std::string& option, const std::string& limit) {
     return runCompare({golden("ref"), golden("test"), "--metrics", "rmse", option, limit}).exitCode;
@@ -119,6 +138,9 @@ TEST_F(CompareCommand, ThresholdsDecideBetweenExitCodes0And4) {
   EXPECT_EQ(exitCode("--max-flip", "0.087"), kExitDone);
   EXPECT_EQ(exitCode("--max-flip", "0.085"), kExitCheck);
   EXPECT_EQ(exitCode("--max-rmse", "abc"), kExitUsage);
+  const auto missed =
+      runCompare({golden("ref"), golden("ref"), "--metrics", "rmse", "--min-ssim", "1.0000000000000002"});
+  EXPECT_EQ(missed.error, "wavecrest: check failed: ssim is 1; --min-ssim asks for 1.0000000000000002\n");
 }
 
 TEST_F(CompareCommand, ExposureBrightensBeforeTheConversionTo8Bits) {
