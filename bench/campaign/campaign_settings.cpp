@@ -24,7 +24,7 @@ Effort paperEffort(std::string_view scene) {
 // AMD EPYC Zen 5, on which an iteration takes a third of the time. Scenes of others have those of cornell-spheres.
 constexpr std::pair<std::string_view, double> kMinutesForPaths[] = {
     {"cornell-diffuse", 6}, {"cornell-mirror", 6},   {"cornell-glossy", 6},          {"lafortune-room", 29},
-    {"pool-interior", 24},  {"dragon-caustics", 40}, {"dragon-caustics-glossy", 15}, {"veach-door", 53}};
+    {"pool-interior", 24},  {"dragon-caustics", 40}, {"dragon-caustics-glossy", 16}, {"veach-door", 53}};
 constexpr double kMinutesOfOthers = 12;
 
 // Snapshots are close together at first, where curves are steep, and a 24th of the run apart later.
