@@ -17,7 +17,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr int kRounds = 10000;
+constexpr int kRounds = 2000;
 
 // A thread that sends a signal to itself each time that it is told to. It has a processor of its own where there are
 // two, so that its handler runs beside the thread that tells it.
