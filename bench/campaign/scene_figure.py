@@ -44,7 +44,7 @@ def bars(campaign, scene):
     methods = [m for m in campaign.methods if any(key[:2] == (scene, m) for key in campaign.series)]
     pitch = min((HEIGHT - 66) / max(len(methods), 1), 36)
     names = BARS + 33
-    first, last = names + 9.4 * max(map(len, methods), default=0) + 8, WIDTH - 64
+    first, last = names + 9.4 * max(map(len, methods), default=0) + 8, WIDTH - 74
     scale = math.log10(max([10.0, *(factor for factor, _ in factors.values())]))
     for i, method in enumerate(methods):
         y = 60 + pitch * (i + 0.5)
