@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "bench/results/whole_number.h"
+#include "bench/whole_number.h"
 
 namespace wavecrest {
 

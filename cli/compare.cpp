@@ -1,5 +1,5 @@
 // wavecrest compare REFERENCE TEST...: metrics of images against one reference, thresholds, false-colour maps.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +19,7 @@
 #include "cli/messages.h"
 #include "library/comparison.h"
 #include "library/option_ranges.h"
+#include "library/suggestion.h"
 #include "metrics/image/image_io.h"
 #include "metrics/metric_list.h"
 #include "metrics/prepared_reference.h"
@@ -119,15 +120,13 @@ bool isWanted(const CompareOptions& options, size_t metric) {
   return isAskedFor(options, metric) || (options.metrics.empty() && metricList()[metric].byDefault);
 }
 
-// "ssim, flip or cvvdp": the metrics that see such images.
+// Names the metrics with one of these inputs, as "ssim, flip or cvvdp".
 std::string metricsThatSee(const std::vector<MetricInput>& inputs) {
   std::vector<std::string_view> names;
   for (const Metric& metric : metricList()) {
     if (std::ranges::find(inputs, metric.input) != inputs.end()) names.push_back(metric.name);
   }
-  const std::string_view last = names.back();
-  names.pop_back();
-  return fmt::format("{} or {}", fmt::join(names, ", "), last);
+  return alternatives(names);
 }
 
 // Refuses options that nothing of what is measured or shown depends on. Throws UsageError.

@@ -29,8 +29,8 @@ void printOut(fmt::format_string<Arguments...> format, Arguments&&... arguments)
 // Writes what is buffered.
 void flushStdout();
 
-// Writes what is buffered. What is wrong with stdout by now, as a complete text; empty where all was written, where
-// stdout is a pipe whose reader has enough, as `head`, and once an earlier call has returned it: who gets it, tells it.
+// Writes what is buffered, and returns a message about the first failure of stdout, which the caller prints. Empty if
+// there was none, if stdout is a pipe that its reader has closed, as `head` does, or if an earlier call returned it.
 std::string takeStdoutFailure();
 
 }  // namespace wavecrest

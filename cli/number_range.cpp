@@ -6,7 +6,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "bench/results/whole_number.h"
+#include "bench/whole_number.h"
 
 namespace wavecrest {
 namespace {

@@ -31,7 +31,7 @@ void warn(ProgressKind kind, const std::string& text);
 // A line that is said in any case: with jsonl {"message": TEXT}, else PREFIX TEXT. messageLine: without its end.
 std::string messageLine(ProgressKind kind, const std::string& text, std::string_view prefix = "wavecrest: ");
 void tellMessage(ProgressKind kind, const std::string& text, std::string_view prefix = "wavecrest: ");
-// A check that was asked for and does not hold: with jsonl {"check_failed": TEXT}, else a line as errors have it.
+// A requested check that failed: with jsonl {"check_failed": TEXT}, else "wavecrest: check failed: TEXT".
 void tellFailedCheck(ProgressKind kind, const std::string& text);
 // All notes and warnings of this process so far, said or not, each once: for its statistics.
 std::vector<std::string> notesSoFar();

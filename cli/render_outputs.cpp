@@ -3,17 +3,18 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <exception>
 #include <filesystem>
 #include <new>
 #include <optional>
+#include <string_view>
 
 #include "bench/campaign/render_stats.h"
 #include "bench/checkpoint/checkpoint.h"
 #include "bench/film_image.h"
 #include "bench/json_text.h"
 #include "bench/results/snapshot_notes.h"
+#include "bench/whole_number.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/messages.h"
@@ -36,10 +37,8 @@ bool isSnapshotOf(const std::string& image, const std::string& file) {
   const fs::path stem = fs::path(file).stem();  // NAME.0007
   const std::string digits = stem.extension().string();
   if (digits.size() < 2) return false;
-  unsigned number = 0;
-  const auto [end, error] = std::from_chars(digits.data() + 1, digits.data() + digits.size(), number);
-  if (error != std::errc() || end != digits.data() + digits.size()) return false;
-  return realName(snapshotFile(image, number)) == realName(file);
+  const std::optional<unsigned> number = wholeNumber<unsigned>(std::string_view(digits).substr(1));
+  return number && realName(snapshotFile(image, *number)) == realName(file);
 }
 
 bool isPng(const std::string& file) { return extensionOf(file) == ".png"; }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -13,6 +12,7 @@
 #include "bench/report/picture_crop.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
+#include "bench/whole_number.h"
 #include "engine/load/input_file.h"
 #include "engine/tasks/processors.h"
 #include "library/campaign_resume.h"
@@ -51,11 +51,7 @@ std::string get(const CampaignOptions& options, const char* name, const std::str
 // ---- from words to settings -----------------------------------------------------------------------------------------
 
 // A whole number from 1 on, or 0 for any other text.
-uint32_t countOf(std::string_view text) {
-  uint32_t count = 0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), count);
-  return error == std::errc() && rest == text.data() + text.size() ? count : 0;
-}
+uint32_t countOf(std::string_view text) { return wholeNumber<uint32_t>(text).value_or(0); }
 
 // A whole number from 1 on, or UsageError.
 uint32_t parseCount(const char* option, const std::string& text) {

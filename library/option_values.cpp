@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "bench/whole_number.h"
 #include "library/errors.h"
 #include "library/suggestion.h"
 
@@ -33,11 +35,9 @@ UsageError outOfRange(const std::string& option, const Value& value, const Optio
 
 template <class Number>
 Number parseNumber(const std::string& option, const std::string& word, const OptionRange<Number>& range) {
-  Number number{};
-  const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  const bool whole = error == std::errc() && rest == word.data() + word.size();
-  if (!whole || !contains(range, number)) throw outOfRange(option, word, range, "");
-  return number;
+  const std::optional<Number> number = wholeNumber<Number>(word);
+  if (!number || !contains(range, *number)) throw outOfRange(option, word, range, "");
+  return *number;
 }
 template double parseNumber(const std::string&, const std::string&, const OptionRange<double>&);
 template uint64_t parseNumber(const std::string&, const std::string&, const OptionRange<uint64_t>&);
@@ -216,12 +216,7 @@ std::string methodsWith(bool (*has)(Method)) {
   for (const MethodEntry& entry : kMethods) {
     if (has(entry.method)) names.push_back(entry.name);
   }
-  std::string text;
-  for (size_t i = 0; i < names.size(); ++i) {
-    if (i != 0) text += i + 1 == names.size() ? " or " : ", ";
-    text += names[i];
-  }
-  return text;
+  return alternatives(names);
 }
 
 }  // namespace wavecrest

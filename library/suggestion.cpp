@@ -45,4 +45,13 @@ std::string didYouMean(std::string_view word, std::span<const std::string> known
   return closest.empty() ? "" : "; did you mean '" + closest + "'?";
 }
 
+std::string alternatives(std::span<const std::string_view> words) {
+  std::string text;
+  for (size_t i = 0; i < words.size(); ++i) {
+    if (i != 0) text += i + 1 == words.size() ? " or " : ", ";
+    text += words[i];
+  }
+  return text;
+}
+
 }  // namespace wavecrest

@@ -1,4 +1,4 @@
-// "Did you mean": the known word that is closest to one that is not known.
+// Parts of messages: the known word that is closest to one that is not known, and lists of alternatives.
 #pragma once
 
 #include <span>
@@ -14,5 +14,8 @@ std::string closestWord(std::string_view word, std::span<const std::string> know
 
 // "; did you mean 'X'?", or nothing: for the end of a message.
 std::string didYouMean(std::string_view word, std::span<const std::string> known);
+
+// "ppm, bpm or vcm".
+std::string alternatives(std::span<const std::string_view> words);
 
 }  // namespace wavecrest

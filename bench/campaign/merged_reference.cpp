@@ -13,7 +13,7 @@ Reference mergedReference(const MergedParts& merged) {
   const nlohmann::ordered_json &render = merged.header.render, &stats = merged.header.notes.at("stats");
   const auto word = [&](const char* key) { return render.at(key).get<std::string>(); };
   const auto depth = render.at("max_depth").get<uint32_t>();
-  // A reference says by what it was rendered, and so whether it is biased.
+  // A reference stores the method that rendered it, from which its bias follows.
   const std::string asked = word("method"), method = render.value("chosen", asked);
   const std::string choice = method == asked ? "" : ", chosen by the trials of " + asked;
   // Methods that do not merge have no radius.

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bench/image_attributes.h"
-#include "bench/results/whole_number.h"
 #include "bench/until/film_error.h"
+#include "bench/whole_number.h"
 #include "metrics/metric_list.h"
 #include "metrics/noise_floor.h"
 

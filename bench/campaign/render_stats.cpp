@@ -125,7 +125,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
                             {"iterations", snapshot.iterations},
                             {"file", snapshot.file}});
   }
-  // Scalars of every render. Rates follow from the others.
+  // Scalars of every render. The two rates have their place here and are set from the others below.
   nlohmann::ordered_json stats = {
       {"version", kVersion},
       {"commit", kCommit},

@@ -27,10 +27,10 @@ constexpr std::array<std::string_view, 24> kSums{
     "merges",         "load_seconds", "build_seconds", "render_seconds",    "render_wall_seconds", "wall_seconds",
     "cpu_seconds",    "parts",        "close_pairs",   "nonfinite_samples", "saturated_splats",    "paths_cut",
     "throughput_cut", "cut_energy",   "direct_paths",  "dark_proposals",    "stuck_runs",          "chain_bytes"};
-// What each process needed by itself, and what chains count by themselves.
+// Keys of which the largest value is kept: memory of one process, counts of one chain.
 constexpr std::array<std::string_view, 4> kLargest{"peak_memory_bytes", "light_bytes", "longest_rejection",
                                                    "bootstrap_epochs"};
-// What says which share a part was, and what the caller or setRates() sets.
+// Keys that describe one part only, or that the caller or setRates() sets.
 constexpr std::array<std::string_view, 9> kNotJoined{"part",           "first_iteration",  "resumed_from",
                                                      "relative_error", "missing",          kOfParts,
                                                      "iterations",     "paths_per_second", "rays_per_second"};

@@ -1,15 +1,13 @@
 #include "bench/live/host_port.h"
 
-#include <charconv>
+#include "bench/whole_number.h"
 
 namespace wavecrest {
 namespace {
 
 std::optional<int> parsePort(const std::string& text) {
-  int port = -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
-  const bool valid = error == std::errc() && end == text.data() + text.size() && port >= 0 && port <= 65535;
-  return valid ? std::optional(port) : std::nullopt;
+  const std::optional<int> port = wholeNumber<int>(text);
+  return port && *port >= 0 && *port <= 65535 ? port : std::nullopt;
 }
 
 }  // namespace

@@ -6,15 +6,16 @@
 #include <algorithm>
 #include <array>
 #include <asio.hpp>
-#include <charconv>
 #include <exception>
 #include <list>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "bench/live/live_server.h"
+#include "bench/whole_number.h"
 
 namespace wavecrest {
 namespace {
@@ -64,9 +65,8 @@ size_t afterLastEvent(std::string_view line) {
     return 0;
   }
   line.remove_prefix(std::min(line.find_first_not_of(' ', kName.size()), line.size()));
-  unsigned id = 0;
-  const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), id);
-  return error == std::errc() && end == line.data() + line.size() ? size_t{id} + 1 : 0;
+  const std::optional<unsigned> id = wholeNumber<unsigned>(line);
+  return id ? size_t{*id} + 1 : 0;
 }
 
 // text: a whole head, lines that end in \r\n. What makes no sense is a request without method or token.

@@ -2,10 +2,10 @@
 
 #include <unistd.h>
 
-#include <charconv>
 #include <cstdlib>
 #include <cstring>
 
+#include "bench/whole_number.h"
 #include "engine/tasks/processors.h"
 
 namespace wavecrest {
@@ -13,12 +13,7 @@ namespace {
 
 // The number that a variable holds, or nothing.
 std::optional<uint32_t> numberIn(const char* text) {
-  if (text == nullptr) return std::nullopt;
-  uint32_t number = 0;
-  const char* const end = text + std::strlen(text);
-  const auto [stop, error] = std::from_chars(text, end, number);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return number;
+  return text == nullptr ? std::nullopt : wholeNumber<uint32_t>(text);
 }
 
 // Which variables hold the number of processes and that of this one among them. The launchers of MPI come before Slurm,

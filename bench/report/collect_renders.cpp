@@ -17,7 +17,7 @@
 #include "bench/report/run_series.h"
 #include "bench/report/series_facts.h"
 #include "bench/report/shown_metrics.h"
-#include "bench/results/whole_number.h"
+#include "bench/whole_number.h"
 #include "metrics/image/image_io.h"
 #include "metrics/noise_floor.h"
 

@@ -13,7 +13,7 @@
 
 #include "bench/image_attributes.h"
 #include "bench/report/run_series.h"
-#include "bench/results/whole_number.h"
+#include "bench/whole_number.h"
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {

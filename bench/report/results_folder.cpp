@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "bench/results/within_folder.h"
+#include "metrics/image/real_name.h"
 
 namespace wavecrest {
 namespace {
@@ -142,7 +143,7 @@ std::string sceneOfFolder(const fs::path& folder) {
     if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) scenes.push_back(scene);
   }
   if (scenes.size() == 1) return scenes.front();
-  return fs::weakly_canonical(fs::absolute(folder)).filename().string();
+  return realName(folder).filename().string();
 }
 
 }  // namespace wavecrest

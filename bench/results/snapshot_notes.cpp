@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/results/whole_number.h"
+#include "bench/whole_number.h"
 
 namespace wavecrest {
 

@@ -13,8 +13,8 @@ std::vector<uint32_t> processorsOfThisProcess();
 // How many they are; at least 1.
 uint32_t allowedProcessors();
 
-// Threads of a render: as many as wished, or where that is 0 one for each of these processors. The default of
-// `--threads` of all commands.
+// The number of threads of a render: `wish`, or if that is 0 one for each of these processors, as `--threads` has by
+// default in all commands.
 uint32_t threadsOrAll(uint32_t wish);
 
 }  // namespace wavecrest

@@ -48,7 +48,7 @@ class Descriptor {
 // Comes after the target's name in every temporary name, before the numbers of the process and of the file.
 constexpr const char* kTemporary = ".tmp";
 
-// Differs from call to call, in whatever thread, and between the processes of a machine.
+// Unique among all calls in all threads and processes of this machine.
 std::string temporaryName(const std::string& path) {
   static std::atomic<unsigned> counter{0};
   return path + kTemporary + "." + std::to_string(::getpid()) + "." + std::to_string(counter++);

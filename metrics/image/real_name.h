@@ -1,4 +1,4 @@
-// The one name of a file, by whatever links it is reached.
+// Resolves symbolic links, also those to files that do not exist yet.
 #pragma once
 
 #include <filesystem>

@@ -7,7 +7,7 @@
 namespace wavecrest {
 namespace {
 
-// While it lives, the calling thread may run on the first of its processors alone.
+// Pins the calling thread to the first of its processors until it is destroyed.
 class OneProcessor {
  public:
   OneProcessor() {

@@ -66,7 +66,7 @@ TEST(JudgeClaims, nearTheReferencesNoiseLossesWithinAFactorMayBeBeyondIt) {
   EXPECT_EQ(MadeUp(apart).floor("rmse", 1.0).verdict(opposite), kHolds) << "lt is the better one";
 }
 
-// 0.02 of the study's light paths in a search, and a twelfth of its paths per pixel.
+// Runs whose searches meet 0.02 of the study's light paths. They have a twelfth of its paths per pixel.
 TEST(JudgeClaims, claimsNeedLightPathsAndTime) {
   const char* const stats = R"({"iterations": 100, "light_paths": 1572864, "camera_paths": 1572864, "width": 128,
                                 "height": 64, "radius": 0.001})";

@@ -1,4 +1,4 @@
-// Numbers as text, whatever the locale of the process.
+// Parses a number by the same rules in every locale.
 #pragma once
 
 #include <charconv>
